@@ -1,0 +1,293 @@
+//! Solid things that cloth collides with.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_reflect::prelude::*;
+use bevy_transform::{components::Transform, helper::TransformHelper};
+
+use crate::{
+    cloth::Cloth,
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    frame::{ClothFrame, split},
+    material::ClothMaterial,
+    particles::ClothParticles,
+    solver::kernels::{
+        half_space::{self, MovingHalfSpace},
+        sphere::{self, MovingSphere},
+    },
+    step::{ClothStep, for_each_cloth},
+};
+
+/// A solid thing that every cloth collides with. It follows the entity's `Transform`, from step to step without gaps, and
+/// takes cloth along by friction.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component)]
+#[require(Transform, ClothStatus, ColliderPose)]
+pub struct ClothCollider {
+    /// Its shape, around the entity's origin.
+    pub shape: ColliderShape,
+    /// Coulomb friction [-]. The geometric mean with the material's counts.
+    pub friction: f32,
+}
+
+/// The shape of a collider.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[non_exhaustive]
+pub enum ColliderShape {
+    /// A ball. Where the entity is scaled, the largest factor counts.
+    Sphere {
+        /// [m].
+        radius: f32,
+    },
+    /// Everything below the entity's x-z plane: the ground.
+    HalfSpace,
+}
+
+impl ClothCollider {
+    /// The friction of a collider unless another is given [-].
+    pub const FRICTION: f32 = 0.5;
+
+    /// A collider that moves faster than this [m/s] is taken to be put elsewhere instead: it does not sweep up the cloth
+    /// between.
+    pub const TELEPORT_SPEED: f32 = 200.0;
+
+    /// A ball of this radius [m].
+    pub fn sphere(radius: f32) -> Self {
+        Self {
+            shape: ColliderShape::Sphere { radius },
+            friction: Self::FRICTION,
+        }
+    }
+
+    /// Everything below the entity's x-z plane.
+    pub fn half_space() -> Self {
+        Self {
+            shape: ColliderShape::HalfSpace,
+            friction: Self::FRICTION,
+        }
+    }
+
+    /// With this Coulomb friction [-].
+    pub fn with_friction(self, friction: f32) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// What is wrong with this collider.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let radius = match self.shape {
+            ColliderShape::Sphere { radius } => ClothErrorKind::number(
+                "ClothCollider radius",
+                radius,
+                |r| r > 0.0 && r.is_finite(),
+                "above 0 and finite [m]",
+            ),
+            ColliderShape::HalfSpace => None,
+        };
+        let friction = ClothErrorKind::number(
+            "ClothCollider.friction",
+            self.friction,
+            |f| f >= 0.0 && f.is_finite(),
+            "at least 0 and finite [-]",
+        );
+        [radius, friction].into_iter().flatten().collect()
+    }
+}
+
+/// Where a collider was at the end of the step before. Written by [`snapshot_colliders`] alone.
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct ColliderPose(Option<Isometry3d>);
+
+/// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct ClothColliders {
+    colliders: Vec<MovingCollider>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct MovingCollider {
+    entity: Entity,
+    shape: ColliderShape,
+    friction: f32,
+    start: Isometry3d,
+    end: Isometry3d,
+}
+
+impl MovingCollider {
+    /// Where its centre is at a part of the step, in the world [m].
+    fn center(&self, fraction: f32) -> Vec3 {
+        self.start
+            .translation
+            .lerp(self.end.translation, fraction)
+            .into()
+    }
+}
+
+impl ClothColliders {
+    /// The number of colliders.
+    pub fn len(&self) -> usize {
+        self.colliders.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.colliders.is_empty()
+    }
+}
+
+/// Reads where the colliders are at the start and at the end of the step.
+///
+/// One that is wrong, or whose transform is not finite, is reported and left out.
+pub fn snapshot_colliders(
+    step: Res<ClothStep>,
+    helper: TransformHelper,
+    mut list: ResMut<ClothColliders>,
+    mut colliders: Query<(Entity, &ClothCollider, &mut ColliderPose, &mut ClothStatus)>,
+    commands: ParallelCommands,
+) {
+    list.colliders.clear();
+    for (entity, collider, mut pose, mut status) in &mut colliders {
+        let errors = collider.errors();
+        let valid = errors.is_empty();
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Collider,
+            errors,
+        );
+        let Ok(transform) = helper.compute_global_transform(entity) else {
+            continue;
+        };
+        let place = split(&transform);
+        let error = place.as_ref().err().cloned();
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Transform,
+            error,
+        );
+        let (Ok((end, scale)), true) = (place, valid) else {
+            pose.0 = None;
+            continue;
+        };
+        let start = pose
+            .0
+            .filter(|start| {
+                let moved = start.translation.distance(end.translation);
+                moved <= ClothCollider::TELEPORT_SPEED * step.seconds()
+            })
+            .unwrap_or(end);
+        pose.0 = Some(end);
+        let shape = match collider.shape {
+            ColliderShape::Sphere { radius } => ColliderShape::Sphere {
+                radius: radius * scale.abs().max_element(),
+            },
+            ColliderShape::HalfSpace => ColliderShape::HalfSpace,
+        };
+        list.colliders.push(MovingCollider {
+            entity,
+            shape,
+            friction: collider.friction,
+            start,
+            end,
+        });
+    }
+    // The order in which they are solved must not depend on how entities are stored.
+    list.colliders.sort_by_key(|collider| collider.entity);
+}
+
+/// Keeps particles out of the spheres.
+pub fn collide_sphere(
+    step: Res<ClothStep>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
+) {
+    let (from, to) = fractions(&step);
+    for_each_cloth!(step, cloths, |(frame, material, mut particles): (
+        &ClothFrame,
+        &ClothMaterial,
+        Mut<ClothParticles>
+    )| {
+        for collider in &colliders.colliders {
+            let ColliderShape::Sphere { radius } = collider.shape else {
+                continue;
+            };
+            let turned = collider.end.rotation * collider.start.rotation.inverse();
+            let sphere = MovingSphere {
+                from: frame.to_frame(collider.center(from)),
+                to: frame.to_frame(collider.center(to)),
+                rotation: frame.vector_to_frame(turned.to_scaled_axis() / step.substeps() as f32),
+                radius: radius + material.thickness.max(0.0),
+                friction: combined_friction(collider.friction, material.friction),
+            };
+            let ClothParticles {
+                position,
+                previous_position,
+                inv_mass,
+                grabbed,
+                ..
+            } = &mut *particles;
+            sphere::collide_all(&sphere, inv_mass, position, previous_position);
+            if let Some(held) = grabbed {
+                sphere::collide_one(&sphere, held.particle as usize, position, previous_position);
+            }
+        }
+    });
+}
+
+/// Keeps particles out of the half-spaces.
+pub fn collide_half_space(
+    step: Res<ClothStep>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
+) {
+    let (from, to) = fractions(&step);
+    for_each_cloth!(step, cloths, |(frame, material, mut particles): (
+        &ClothFrame,
+        &ClothMaterial,
+        Mut<ClothParticles>
+    )| {
+        for collider in &colliders.colliders {
+            let ColliderShape::HalfSpace = collider.shape else {
+                continue;
+            };
+            let rotation = collider.start.rotation.slerp(collider.end.rotation, to);
+            let plane = MovingHalfSpace {
+                from: frame.to_frame(collider.center(from)),
+                to: frame.to_frame(collider.center(to)),
+                normal: frame.vector_to_frame(rotation * Vec3::Y),
+                margin: material.thickness.max(0.0),
+                friction: combined_friction(collider.friction, material.friction),
+            };
+            let ClothParticles {
+                position,
+                previous_position,
+                inv_mass,
+                grabbed,
+                ..
+            } = &mut *particles;
+            half_space::collide_all(&plane, inv_mass, position, previous_position);
+            if let Some(held) = grabbed {
+                half_space::collide_one(
+                    &plane,
+                    held.particle as usize,
+                    position,
+                    previous_position,
+                );
+            }
+        }
+    });
+}
+
+/// The parts of the step at which the substep in progress starts and ends.
+fn fractions(step: &ClothStep) -> (f32, f32) {
+    let to = step.fraction();
+    (to - 1.0 / step.substeps().max(1) as f32, to)
+}
+
+/// Two surfaces rub with the geometric mean of their frictions: if either is slippery, so is the pair.
+fn combined_friction(a: f32, b: f32) -> f32 {
+    (a * b).max(0.0).sqrt()
+}

@@ -1,0 +1,116 @@
+//! Figures about a cloth: stretch, energy, momentum; how long a step takes.
+
+use std::time::{Duration, Instant};
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+use crate::{
+    particles::ClothParticles,
+    topology::{Topology, constraints::ConstraintFamily},
+};
+
+/// How long the last step took. Written by the cloth systems alone.
+#[derive(Resource, Clone, Debug, Default, Reflect)]
+#[reflect(Resource, Default)]
+pub struct ClothStepTime {
+    /// All substeps.
+    pub simulate: Duration,
+    /// The whole step, from the first system of [`ClothSystems::Prepare`](crate::schedule::ClothSystems) to the last of
+    /// `Writeback`.
+    pub total: Duration,
+    #[reflect(ignore)]
+    pub(crate) start: Option<Instant>,
+}
+
+/// Starts the clock of the step.
+pub(crate) fn start_clock(mut time: ResMut<ClothStepTime>) {
+    time.start = Some(Instant::now());
+}
+
+/// Stops the clock of the step.
+pub(crate) fn stop_clock(mut time: ResMut<ClothStepTime>) {
+    time.total = time.start.map_or(Duration::ZERO, |start| start.elapsed());
+}
+
+/// How far the edges of a cloth are stretched: l/L − 1 over its stretch constraints [-].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+pub struct Stretch {
+    /// Mean of max(0, l/L − 1).
+    pub mean: f32,
+    /// The value that 99 % of the edges do not exceed.
+    pub p99: f32,
+    /// The largest.
+    pub max: f32,
+}
+
+impl ClothParticles {
+    /// How far the edges are stretched. Zero for a cloth without edges.
+    pub fn stretch(&self, topology: &Topology) -> Stretch {
+        let mut values: Vec<f32> = topology
+            .constraints
+            .family(ConstraintFamily::Stretch)
+            .filter(|([a, b], rest)| (a.max(b).to_owned() as usize) < self.len() && *rest > 0.0)
+            .map(|([a, b], rest)| {
+                let length = self
+                    .position(a as usize)
+                    .distance(self.position(b as usize));
+                (length / rest - 1.0).max(0.0)
+            })
+            .collect();
+        if values.is_empty() {
+            return Stretch::default();
+        }
+        let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
+        let mean = (sum / values.len() as f64) as f32;
+        let at = (values.len() * 99 / 100).min(values.len() - 1);
+        let (_, p99, above) = values.select_nth_unstable_by(at, f32::total_cmp);
+        let max = above.iter().copied().fold(*p99, f32::max);
+        Stretch {
+            mean,
+            p99: *p99,
+            max,
+        }
+    }
+
+    /// Kinetic energy [J] of all particles that are not pinned.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.free()
+            .map(|i| 0.5 * f64::from(self.mass[i]) * f64::from(self.velocity(i).length_squared()))
+            .sum()
+    }
+
+    /// Potential energy [J] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
+    pub fn potential_energy(&self, gravity: Vec3) -> f64 {
+        self.free()
+            .map(|i| -f64::from(self.mass[i]) * f64::from(gravity.dot(self.position(i))))
+            .sum()
+    }
+
+    /// Linear momentum [kg m/s] of all particles that are not pinned, in the axes of the frame.
+    pub fn momentum(&self) -> Vec3 {
+        self.free()
+            .map(|i| (self.velocity(i) * self.mass[i]).as_dvec3())
+            .sum::<bevy_math::DVec3>()
+            .as_vec3()
+    }
+
+    /// Angular momentum [kg m²/s] of all particles that are not pinned, about the frame's origin.
+    pub fn angular_momentum(&self) -> Vec3 {
+        self.free()
+            .map(|i| {
+                // Half way through the substep, where the velocity is that of the difference.
+                let place = 0.5 * (self.position(i) + self.previous_position.get(i));
+                place
+                    .as_dvec3()
+                    .cross((self.velocity(i) * self.mass[i]).as_dvec3())
+            })
+            .sum::<bevy_math::DVec3>()
+            .as_vec3()
+    }
+
+    fn free(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.len()).filter(|&i| self.inv_mass[i] > 0.0)
+    }
+}

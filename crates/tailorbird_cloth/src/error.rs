@@ -1,0 +1,270 @@
+//! What a user can get wrong, as typed errors that name the entity, the field, the value and what is allowed.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{UVec2, Vec2, Vec3};
+use bevy_reflect::prelude::*;
+use thiserror::Error;
+use tracing::error;
+
+/// Something is wrong with a cloth or a collider.
+///
+/// Logged once, kept in [`ClothStatus`] while it lasts, and triggered for observers:
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use tailorbird_cloth::prelude::*;
+/// fn on_error(error: On<ClothError>) {
+///     eprintln!("{} is wrong: {}", error.entity, error.kind);
+/// }
+/// ```
+#[derive(EntityEvent, Clone, Debug, PartialEq, Error, Reflect)]
+#[error("{entity}: {kind}")]
+pub struct ClothError {
+    /// The cloth or collider that is wrong.
+    pub entity: Entity,
+    /// What is wrong with it.
+    pub kind: ClothErrorKind,
+}
+
+/// What is wrong: the field, its value, and what is allowed.
+#[derive(Clone, Debug, PartialEq, Error, Reflect)]
+#[non_exhaustive]
+pub enum ClothErrorKind {
+    /// A grid's size is zero, negative or not finite.
+    #[error("Cloth grid size is {value} m, must be positive and finite in both directions")]
+    Size {
+        /// The size [m].
+        value: Vec2,
+    },
+    /// A grid has too few or too many particles.
+    #[error(
+        "Cloth grid resolution is {value} particles, must be at least 2 × 2 and at most 16,777,216 in all"
+    )]
+    Resolution {
+        /// Columns and rows.
+        value: UVec2,
+    },
+    /// A mesh has no triangle (left).
+    #[error(
+        "Cloth mesh has {vertices} vertices and {triangles} usable triangles, must have at least one triangle"
+    )]
+    NoTriangles {
+        /// The number of vertices.
+        vertices: usize,
+        /// The number of triangles that are not degenerate.
+        triangles: usize,
+    },
+    /// The number of indices is not a multiple of three.
+    #[error("Cloth mesh has {value} indices, must be a multiple of 3")]
+    IndexCount {
+        /// The number of indices.
+        value: usize,
+    },
+    /// An index names no vertex.
+    #[error(
+        "Cloth mesh indices[{at}] is {value}, must be below the number of vertices, {vertices}"
+    )]
+    IndexOutOfRange {
+        /// Where in the index list.
+        at: usize,
+        /// The index.
+        value: u32,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A rest position is not finite.
+    #[error("Cloth mesh positions[{vertex}] is {value}, must be finite")]
+    NonFinitePosition {
+        /// The vertex.
+        vertex: usize,
+        /// Its position.
+        value: Vec3,
+    },
+    /// Triangles without area were left out; the cloth works without them.
+    #[error(
+        "Cloth mesh has {count} triangles without area, the first is triangle {first}; triangles must have three distinct corners that are not in a line: dropped"
+    )]
+    DegenerateTriangles {
+        /// How many.
+        count: usize,
+        /// The first of them.
+        first: usize,
+    },
+    /// Triangles with the same three corners were left out; the cloth works without them.
+    #[error(
+        "Cloth mesh has {count} triangles twice, the first is triangle {first}; each must be there once: dropped"
+    )]
+    DuplicateTriangles {
+        /// How many.
+        count: usize,
+        /// The first of them.
+        first: usize,
+    },
+    /// A number is out of its range.
+    #[error("{field} is {value}, must be {allowed}")]
+    Value {
+        /// The type and field.
+        field: String,
+        /// Its value.
+        value: f32,
+        /// What is allowed, with the unit.
+        allowed: String,
+    },
+    /// A vector is not finite.
+    #[error("{field} is {value}, must be finite")]
+    Vector {
+        /// The type and field.
+        field: String,
+        /// Its value.
+        value: Vec3,
+    },
+    /// The entity's place in the world has a translation or rotation that is not finite.
+    #[error("GlobalTransform is {value}, must be finite")]
+    Transform {
+        /// The matrix, written out.
+        value: String,
+    },
+    /// The entity is scaled to nothing.
+    #[error("Transform scale is {value}, must be finite and not zero in any direction")]
+    Scale {
+        /// The scale.
+        value: Vec3,
+    },
+    /// A pin, a grab or a force names a particle that is not there.
+    #[error("{field} names particle {value}, must be below the number of particles, {particles}")]
+    ParticleOutOfRange {
+        /// The type and field.
+        field: String,
+        /// The particle.
+        value: u32,
+        /// How many there are.
+        particles: usize,
+    },
+    /// Pins say "corner" or "edge" of a cloth that is no grid.
+    #[error(
+        "{field} is {value}, must name particles or a region: this cloth is a mesh, it has no grid corners or edges"
+    )]
+    NotAGrid {
+        /// The type and field.
+        field: String,
+        /// What was selected.
+        value: String,
+    },
+    /// The state of the cloth became infinite or NaN and was reset.
+    #[error(
+        "ClothParticles became non-finite at particle {particle}, positions must be finite: reset to the last finite state"
+    )]
+    NonFiniteState {
+        /// The first particle that was not finite.
+        particle: usize,
+    },
+}
+
+impl ClothErrorKind {
+    /// An error about a number, or nothing where `ok` holds.
+    pub(crate) fn number(
+        field: &str,
+        value: f32,
+        ok: impl Fn(f32) -> bool,
+        allowed: &str,
+    ) -> Option<Self> {
+        (!ok(value)).then(|| Self::Value {
+            field: field.into(),
+            value,
+            allowed: allowed.into(),
+        })
+    }
+
+    /// An error about a vector that is not finite.
+    pub(crate) fn vector(field: &str, value: Vec3) -> Option<Self> {
+        (!value.is_finite()).then(|| Self::Vector {
+            field: field.into(),
+            value,
+        })
+    }
+}
+
+/// Which check an error came from; a check replaces its own errors alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub enum ErrorSource {
+    /// The rest shape.
+    Shape,
+    /// [`ClothMaterial`](crate::material::ClothMaterial).
+    Material,
+    /// [`ClothPins`](crate::pins::ClothPins).
+    Pins,
+    /// [`ClothGrab`](crate::grab::ClothGrab).
+    Grab,
+    /// The entity's place in the world.
+    Transform,
+    /// [`ClothCollider`](crate::collider::ClothCollider).
+    Collider,
+    /// [`ClothForces`](crate::forces::ClothForces).
+    Forces,
+    /// [`ClothParticles`](crate::particles::ClothParticles).
+    State,
+}
+
+/// What is wrong with this cloth or collider at present; empty when all is well.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothStatus {
+    entries: Vec<(ErrorSource, ClothErrorKind)>,
+}
+
+impl ClothStatus {
+    /// The errors that hold.
+    pub fn errors(&self) -> impl Iterator<Item = &ClothErrorKind> {
+        self.entries.iter().map(|(_, kind)| kind)
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_ok(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Whether this check has found nothing.
+    pub(crate) fn is_ok_for(&self, source: ErrorSource) -> bool {
+        self.entries.iter().all(|(s, _)| *s != source)
+    }
+
+    /// Replaces what `source` found before by `found`; what is new is logged and triggered.
+    ///
+    /// Does not touch (and so does not mark as changed) a status that stays as it is.
+    pub(crate) fn update(
+        status: &mut Mut<Self>,
+        entity: Entity,
+        commands: &ParallelCommands,
+        source: ErrorSource,
+        found: impl IntoIterator<Item = ClothErrorKind>,
+    ) {
+        let mut found = found.into_iter().peekable();
+        if found.peek().is_none() && status.is_ok_for(source) {
+            return;
+        }
+        let found: Vec<_> = found.collect();
+        // Compared as text, since NaN does not equal itself.
+        let before: Vec<String> = status
+            .entries
+            .iter()
+            .filter(|(s, _)| *s == source)
+            .map(|(_, kind)| kind.to_string())
+            .collect();
+        let after: Vec<String> = found.iter().map(ToString::to_string).collect();
+        if before == after {
+            return;
+        }
+        status.entries.retain(|(s, _)| *s != source);
+        for (kind, text) in found.into_iter().zip(after) {
+            if !before.contains(&text) {
+                error!("{entity}: {text}");
+                let event = ClothError {
+                    entity,
+                    kind: kind.clone(),
+                };
+                commands.command_scope(|mut commands| commands.trigger(event));
+            }
+            status.entries.push((source, kind));
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A cloth in somebody's hand.
+
+use std::collections::VecDeque;
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+use crate::{
+    cloth::Cloth,
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    frame::ClothFrame,
+    particles::{ClothParticles, Held, Pulled},
+    topology::ClothTopology,
+};
+
+/// A cloth in somebody's hand: one particle is moved to a point of the world, its neighbours are pulled along, less
+/// and less with distance.
+///
+/// The held particle follows as far as the cloth does: it never gets further from a neighbour than
+/// [`ClothGrab::MOST_STRETCH`] times their distance at rest, so that pulling a pinned cloth draws no spike.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothGrab {
+    held: Option<Hand>,
+}
+
+#[derive(Clone, Debug, PartialEq, Reflect)]
+struct Hand {
+    particle: u32,
+    radius: f32,
+    target: Vec3,
+    /// Set by [`apply_grab`] when the hand closes: who is pulled along, with which weight, where from the particle.
+    patch: Option<Vec<(u32, f32, Vec3)>>,
+    revision: u64,
+}
+
+impl ClothGrab {
+    /// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
+    pub const MOST_STRETCH: f32 = 1.1;
+
+    /// Takes a particle, and those within `radius` [m] along the sheet (its direct neighbours at least). `target` is
+    /// where it is to be, in the world [m].
+    pub fn take(&mut self, particle: u32, radius: f32, target: Vec3) {
+        self.held = Some(Hand {
+            particle,
+            radius,
+            target,
+            patch: None,
+            revision: 0,
+        });
+    }
+
+    /// Moves the hand to a point of the world [m].
+    pub fn move_to(&mut self, target: Vec3) {
+        if let Some(hand) = &mut self.held {
+            hand.target = target;
+        }
+    }
+
+    /// Lets go.
+    pub fn release(&mut self) {
+        self.held = None;
+    }
+
+    /// The particle in the hand.
+    pub fn particle(&self) -> Option<u32> {
+        self.held.as_ref().map(|hand| hand.particle)
+    }
+
+    /// Where the hand is in the world [m].
+    pub fn target(&self) -> Option<Vec3> {
+        self.held.as_ref().map(|hand| hand.target)
+    }
+
+    /// The particles in the hand: the one that is held, then those that are pulled along (from the first step on).
+    pub fn particles(&self) -> impl Iterator<Item = u32> + '_ {
+        let patch = self
+            .held
+            .iter()
+            .flat_map(|hand| hand.patch.iter().flatten());
+        self.particle()
+            .into_iter()
+            .chain(patch.map(|(particle, ..)| *particle))
+    }
+}
+
+/// How much a particle at this distance is pulled along: (1 − d²/r²)², 1 at the hand, 0 with no kink at the rim.
+fn falloff(distance: f32, radius: f32) -> f32 {
+    let q = (1.0 - (distance / radius).powi(2)).max(0.0);
+    q * q
+}
+
+/// Turns grabs into targets for this step.
+pub fn apply_grab(
+    mut cloths: Query<
+        (
+            Entity,
+            &mut ClothGrab,
+            &ClothTopology,
+            &ClothFrame,
+            &mut ClothParticles,
+            &mut ClothStatus,
+        ),
+        With<Cloth>,
+    >,
+    commands: ParallelCommands,
+) {
+    for (entity, mut grab, topology, frame, mut particles, mut status) in &mut cloths {
+        let before = particles.grabbed.map(|held| held.particle);
+        let error = match &mut grab.bypass_change_detection().held {
+            None => {
+                particles.grabbed = None;
+                particles.pulled.clear();
+                None
+            }
+            Some(hand) if particles.is_empty() || !hand.target.is_finite() => {
+                ClothErrorKind::vector("ClothGrab.target", hand.target)
+            }
+            Some(hand) if hand.particle as usize >= particles.len() => {
+                Some(ClothErrorKind::ParticleOutOfRange {
+                    field: "ClothGrab".into(),
+                    value: hand.particle,
+                    particles: particles.len(),
+                })
+            }
+            Some(hand) => {
+                if hand.revision != topology.revision {
+                    hand.patch = None;
+                    hand.revision = topology.revision;
+                }
+                let patch = hand
+                    .patch
+                    .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
+                let target = frame.to_frame(hand.target);
+                particles.pulled.clear();
+                particles
+                    .pulled
+                    .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
+                        particle,
+                        target: target + offset,
+                        weight,
+                    }));
+                particles.grabbed =
+                    (!particles.is_pinned(hand.particle as usize)).then_some(Held {
+                        particle: hand.particle,
+                        target,
+                    });
+                None
+            }
+        };
+        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Grab, error);
+        if particles.grabbed.map(|held| held.particle) != before {
+            particles.update_inv_masses();
+        }
+    }
+}
+
+/// The particles within `radius` [m] of one along the edges at rest, direct neighbours at least, without itself.
+fn patch(
+    center: u32,
+    radius: f32,
+    topology: &ClothTopology,
+    particles: &ClothParticles,
+) -> Vec<(u32, f32, Vec3)> {
+    let rest = |i: u32| topology.rest_positions[i as usize];
+    let ring = topology
+        .neighbors
+        .of(center)
+        .iter()
+        .map(|&n| rest(n).distance(rest(center)))
+        .fold(0.0, f32::max);
+    // Beyond the first ring, so that the weight there is not 0.
+    let radius = radius.max(1.5 * ring);
+    let held_at = particles.position(center as usize);
+    let mut seen = vec![center];
+    let mut queue = VecDeque::from([center]);
+    let mut patch = Vec::new();
+    while let Some(from) = queue.pop_front() {
+        for &particle in topology.neighbors.of(from) {
+            let weight = falloff(rest(particle).distance(rest(center)), radius);
+            if weight > 0.0 && !seen.contains(&particle) {
+                seen.push(particle);
+                queue.push_back(particle);
+                let offset = particles.position(particle as usize) - held_at;
+                patch.push((particle, weight, offset));
+            }
+        }
+    }
+    patch
+}
+
+impl ClothParticles {
+    /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
+    /// around it along. `left` substeps remain, this one included.
+    pub(crate) fn move_grabbed(&mut self, topology: &ClothTopology, left: u32, seconds: f32) {
+        if let Some(held) = self.grabbed {
+            let i = held.particle as usize;
+            let from = self.position.get(i);
+            let mut to = from + (held.target - from) / left as f32;
+            // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
+            for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
+                let rest =
+                    topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
+                let anchor = self.position.get(neighbor as usize);
+                to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
+            }
+            self.previous_position.set(i, from);
+            self.position.set(i, to);
+        }
+        // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
+        for pulled in &self.pulled {
+            let i = pulled.particle as usize;
+            if self.inv_mass[i] == 0.0 {
+                continue;
+            }
+            let rate = 1.0 - (1.0 - pulled.weight).max(0.0).powf(60.0 * seconds);
+            let (from, to) = (self.previous_position.get(i), self.position.get(i));
+            let slowed = from + (to - from) * (1.0 - rate);
+            self.position.set(i, slowed.lerp(pulled.target, rate));
+        }
+    }
+}

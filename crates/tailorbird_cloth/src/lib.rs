@@ -1,0 +1,73 @@
+//! Real-time cloth as ECS components and systems, without a renderer.
+//!
+//! A cloth is one entity. [`Cloth`] says what its rest shape is, everything else it needs comes with it:
+//!
+//! ```
+//! use bevy_app::{App, TaskPoolPlugin};
+//! use bevy_math::{UVec2, Vec2};
+//! use bevy_time::TimePlugin;
+//! use tailorbird_cloth::prelude::*;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((TaskPoolPlugin::default(), TimePlugin, ClothPlugin::default()));
+//! app.world_mut().spawn((
+//!     Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
+//!     ClothMaterial::cotton(),
+//!     ClothPins::corners([GridCorner::TopLeft, GridCorner::TopRight]),
+//! ));
+//! app.update();
+//! ```
+//!
+//! The crate `tailorbird` adds what a game needs on top: the mesh, picking, dragging, debug drawing.
+//!
+//! Units are metres, kilograms and seconds. World axes are Bevy's: right-handed, y up.
+
+pub mod bounds;
+pub mod build;
+pub mod cloth;
+pub mod collider;
+pub mod diagnostics;
+pub mod error;
+pub mod forces;
+pub mod frame;
+pub mod grab;
+pub mod material;
+pub mod normals;
+pub mod particles;
+pub mod pins;
+pub mod plugin;
+pub mod points;
+pub mod query;
+pub mod schedule;
+pub mod settings;
+pub mod solver;
+pub mod step;
+pub mod topology;
+pub mod validate;
+pub mod wind;
+
+/// The types that most users of the crate name.
+pub mod prelude {
+    pub use crate::{
+        bounds::ClothBounds,
+        cloth::{Cloth, ClothShape},
+        collider::{ClothCollider, ColliderShape},
+        diagnostics::{ClothStepTime, Stretch},
+        error::{ClothError, ClothErrorKind, ClothStatus},
+        forces::ClothForces,
+        frame::ClothFrame,
+        grab::ClothGrab,
+        material::ClothMaterial,
+        normals::{ClothNormals, ClothShading},
+        particles::ClothParticles,
+        pins::{ClothPin, ClothPins, GridCorner, GridEdge, PinAuthor, PinSelection},
+        plugin::ClothPlugin,
+        query::ClothHit,
+        schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
+        settings::ClothSettings,
+        step::ClothStep,
+        topology::ClothTopology,
+        validate::ClothReset,
+        wind::{Gusts, Wind, WindModel},
+    };
+}

@@ -1,0 +1,175 @@
+//! What a cloth is made of.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+
+use crate::error::ClothErrorKind;
+
+/// Grams per square metre in one ounce per square yard, the unit in which denim is sold: 28.349523 g / 0.83612736 m².
+const OUNCE_PER_SQUARE_YARD: f32 = 0.033_905_75;
+
+/// Kilograms per square metre in one momme, the unit in which silk is sold: 4.340 g/m².
+const MOMME: f32 = 0.004_34;
+
+/// What a cloth is made of. Change it at any time.
+///
+/// The presets have the areal densities under which such fabrics are sold:
+///
+/// | preset | areal density | from |
+/// | --- | --- | --- |
+/// | [`silk`](Self::silk) | 0.069 kg/m² | 16 momme charmeuse, 1 momme = 4.340 g/m² |
+/// | [`cotton`](Self::cotton) | 0.150 kg/m² | bed sheeting and shirting is sold at 110 to 200 g/m² |
+/// | [`denim`](Self::denim) | 0.475 kg/m² | 14 oz/yd², 1 oz/yd² = 33.906 g/m² |
+/// | [`leather`](Self::leather) | 0.860 kg/m² | 1.0 mm garment leather of 860 kg/m³ |
+/// | [`rubber`](Self::rubber) | 0.930 kg/m² | 1.0 mm sheet of natural rubber, 930 kg/m³ |
+///
+/// Compliances are those of one spring between two particles; 0 is rigid.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothMaterial {
+    /// Mass per area [kg/m²].
+    pub areal_density: f32,
+    /// Compliance along the edges [m/N].
+    pub stretch_compliance: f32,
+    /// Compliance along the diagonals [m/N].
+    pub shear_compliance: f32,
+    /// Compliance of the springs that skip a particle [m/N].
+    pub bend_compliance: f32,
+    /// Rate at which motion decays [1/s]; independent of the number of substeps.
+    pub damping: f32,
+    /// Coulomb friction [-]. The geometric mean with the collider's counts.
+    pub friction: f32,
+    /// Distance at which the cloth's middle stays from colliders [m].
+    pub thickness: f32,
+    /// Drag coefficient of a flat plate across the flow [-].
+    pub drag: f32,
+    /// Lift coefficient of a flat plate [-]. Equal to `drag`, the air pushes along the normal alone.
+    pub lift: f32,
+}
+
+impl Default for ClothMaterial {
+    /// Cotton.
+    fn default() -> Self {
+        Self::cotton()
+    }
+}
+
+impl ClothMaterial {
+    /// Charmeuse: light, smooth, drapes in fine folds.
+    pub const fn silk() -> Self {
+        Self {
+            areal_density: 16.0 * MOMME,
+            stretch_compliance: 0.0,
+            shear_compliance: 2e-3,
+            bend_compliance: 1.0,
+            damping: 0.3,
+            friction: 0.2,
+            thickness: 0.003,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// A bed sheet.
+    pub const fn cotton() -> Self {
+        Self {
+            areal_density: 0.15,
+            stretch_compliance: 0.0,
+            shear_compliance: 5e-4,
+            bend_compliance: 0.2,
+            damping: 0.3,
+            friction: 0.5,
+            thickness: 0.005,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// Raw 14-ounce denim: heavy and stiff.
+    pub const fn denim() -> Self {
+        Self {
+            areal_density: 14.0 * OUNCE_PER_SQUARE_YARD,
+            stretch_compliance: 0.0,
+            shear_compliance: 1e-4,
+            bend_compliance: 0.02,
+            damping: 0.5,
+            friction: 0.6,
+            thickness: 0.006,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// Garment leather, 1 mm.
+    pub const fn leather() -> Self {
+        Self {
+            areal_density: 0.86,
+            stretch_compliance: 1e-6,
+            shear_compliance: 2e-5,
+            bend_compliance: 2e-3,
+            damping: 0.8,
+            friction: 0.6,
+            thickness: 0.006,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// A sheet of natural rubber, 1 mm: stretches visibly under its own weight.
+    pub const fn rubber() -> Self {
+        Self {
+            areal_density: 0.93,
+            stretch_compliance: 2e-3,
+            shear_compliance: 4e-3,
+            bend_compliance: 0.05,
+            damping: 1.0,
+            friction: 0.9,
+            thickness: 0.006,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// The presets with their names.
+    pub const fn presets() -> [(&'static str, Self); 5] {
+        [
+            ("silk", Self::silk()),
+            ("cotton", Self::cotton()),
+            ("denim", Self::denim()),
+            ("leather", Self::leather()),
+            ("rubber", Self::rubber()),
+        ]
+    }
+
+    /// What is wrong with this material.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
+        let check = |field: &str, value: f32, unit: &str| {
+            ClothErrorKind::number(
+                &format!("ClothMaterial.{field}"),
+                value,
+                not_negative,
+                &format!("at least 0 and finite [{unit}]"),
+            )
+        };
+        [
+            ClothErrorKind::number(
+                "ClothMaterial.areal_density",
+                self.areal_density,
+                |v| v > 0.0 && v.is_finite(),
+                "above 0 and finite [kg/m²]",
+            ),
+            check("stretch_compliance", self.stretch_compliance, "m/N"),
+            check("shear_compliance", self.shear_compliance, "m/N"),
+            check("bend_compliance", self.bend_compliance, "m/N"),
+            check("damping", self.damping, "1/s"),
+            check("friction", self.friction, "-"),
+            check("thickness", self.thickness, "m"),
+            check("drag", self.drag, "-"),
+            check("lift", self.lift, "-"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+}

@@ -1,0 +1,206 @@
+//! The state of all particles of one cloth.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+use crate::{frame::ClothFrame, points::Points};
+
+/// The state of all particles of one cloth, as parallel arrays, in the cloth's frame.
+///
+/// Read it freely. It is written by the cloth systems alone: pins, grabs and [`ClothForces`](crate::forces::ClothForces)
+/// are the ways to move it.
+#[derive(Component, Reflect, Clone, Debug, Default)]
+#[reflect(Component, Default)]
+pub struct ClothParticles {
+    /// Position [m].
+    #[reflect(ignore)]
+    pub(crate) position: Points,
+    /// Position at the start of the substep [m]; with `position` and `substep_seconds` it gives the velocity.
+    #[reflect(ignore)]
+    pub(crate) previous_position: Points,
+    /// Position at the start of the step [m], to interpolate from, and to fall back to.
+    #[reflect(ignore)]
+    pub(crate) step_position: Points,
+    /// Acceleration by wind and forces during this step [m/s²].
+    #[reflect(ignore)]
+    pub(crate) acceleration: Points,
+    /// Mass, pinned or not [kg].
+    #[reflect(ignore)]
+    pub(crate) mass: Vec<f32>,
+    /// 1/mass [1/kg]; 0 is kinematic.
+    #[reflect(ignore)]
+    pub(crate) inv_mass: Vec<f32>,
+    /// Multipliers of the constraints; scratch of a substep.
+    #[reflect(ignore)]
+    pub(crate) lambda: Vec<f32>,
+    /// Pinned particles by index.
+    #[reflect(ignore)]
+    pub(crate) pins: Vec<Held>,
+    /// The particle that is moved by a grab, and where to [m].
+    #[reflect(ignore)]
+    pub(crate) grabbed: Option<Held>,
+    /// Particles that are pulled along with the grabbed one.
+    #[reflect(ignore)]
+    pub(crate) pulled: Vec<Pulled>,
+    /// The time that `position` − `previous_position` took [s].
+    pub(crate) substep_seconds: f32,
+}
+
+/// A particle that is held at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Held {
+    pub particle: u32,
+    /// In the cloth's frame [m].
+    pub target: Vec3,
+}
+
+/// A particle that is pulled to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pulled {
+    pub particle: u32,
+    /// In the cloth's frame [m].
+    pub target: Vec3,
+    /// Part of the way to the target that is gone in a sixtieth of a second, 0 to 1.
+    pub weight: f32,
+}
+
+impl ClothParticles {
+    /// Particles at rest, without mass yet.
+    pub(crate) fn at_rest(rest_positions: &[Vec3]) -> Self {
+        Self::with_positions(rest_positions.iter().copied().collect())
+    }
+
+    pub(crate) fn with_positions(position: Points) -> Self {
+        let len = position.len();
+        Self {
+            previous_position: position.clone(),
+            step_position: position.clone(),
+            acceleration: Points::zeroed(len),
+            mass: vec![0.0; len],
+            inv_mass: vec![0.0; len],
+            position,
+            ..Self::default()
+        }
+    }
+
+    /// The number of particles.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there are none: the cloth is not built yet, or its shape is invalid.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Where a particle is, in the cloth's frame [m].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn position(&self, i: usize) -> Vec3 {
+        self.position.get(i)
+    }
+
+    /// Where all particles are, in the cloth's frame [m].
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        self.position.iter()
+    }
+
+    /// The coordinates as three arrays, in the cloth's frame [m].
+    pub fn points(&self) -> &Points {
+        &self.position
+    }
+
+    /// The coordinates a step before [`Self::points`], in the cloth's frame [m].
+    pub fn previous_points(&self) -> &Points {
+        &self.step_position
+    }
+
+    /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
+    /// frame [m].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[inline]
+    pub fn interpolated(&self, i: usize, fraction: f32) -> Vec3 {
+        let (from, to) = (self.step_position.get(i), self.position.get(i));
+        // This form gives both ends exactly.
+        from * (1.0 - fraction) + to * fraction
+    }
+
+    /// Where a particle is in the world [m].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn world_position(&self, i: usize, frame: &ClothFrame) -> Vec3 {
+        frame.to_world(self.position(i))
+    }
+
+    /// How fast a particle moves through the world, in the axes of the cloth's frame [m/s].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn velocity(&self, i: usize) -> Vec3 {
+        if self.substep_seconds > 0.0 {
+            (self.position.get(i) - self.previous_position.get(i)) / self.substep_seconds
+        } else {
+            Vec3::ZERO
+        }
+    }
+
+    /// A particle's mass [kg].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn mass(&self, i: usize) -> f32 {
+        self.mass[i]
+    }
+
+    /// Whether a particle is held by a pin.
+    pub fn is_pinned(&self, i: usize) -> bool {
+        self.pins
+            .binary_search_by_key(&(i as u32), |pin| pin.particle)
+            .is_ok()
+    }
+
+    /// The pinned particles, in order.
+    pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.pins.iter().map(|pin| pin.particle as usize)
+    }
+
+    /// The particle that a grab holds.
+    pub fn grabbed(&self) -> Option<usize> {
+        self.grabbed.map(|held| held.particle as usize)
+    }
+
+    /// Gives every particle its share of the mass; pinned and grabbed ones become kinematic.
+    pub(crate) fn set_masses(&mut self, areas: &[f32], areal_density: f32) {
+        for (mass, area) in self.mass.iter_mut().zip(areas) {
+            *mass = areal_density * area;
+        }
+        self.update_inv_masses();
+    }
+
+    pub(crate) fn update_inv_masses(&mut self) {
+        for (inv_mass, mass) in self.inv_mass.iter_mut().zip(&self.mass) {
+            // A vertex that no triangle uses has no mass and stays where it is.
+            *inv_mass = if *mass > 0.0 { 1.0 / mass } else { 0.0 };
+        }
+        for held in self.pins.iter().chain(&self.grabbed) {
+            self.inv_mass[held.particle as usize] = 0.0;
+        }
+    }
+
+    /// Notes where the step starts.
+    pub(crate) fn begin_step(&mut self) {
+        self.step_position.copy_from(&self.position);
+    }
+
+    /// Puts the particles back to where the step started, without velocity.
+    pub(crate) fn reset_to_step_start(&mut self) {
+        self.position.copy_from(&self.step_position);
+        self.previous_position.copy_from(&self.step_position);
+        self.acceleration.fill(Vec3::ZERO);
+    }
+}

@@ -1,0 +1,338 @@
+//! Particles that are held in the cloth's frame.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{UVec2, Vec3};
+use bevy_reflect::prelude::*;
+
+use crate::{
+    cloth::Cloth,
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    material::ClothMaterial,
+    particles::{ClothParticles, Held},
+    topology::{ClothTopology, Topology},
+};
+
+/// The particles that are held: they move with the entity and with nothing else. Change it at any time.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothPins {
+    /// The pins. Where two name the same particle, the later one counts.
+    pub pins: Vec<ClothPin>,
+}
+
+/// One pin, of one particle or several.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+pub struct ClothPin {
+    /// What it holds.
+    pub selection: PinSelection,
+    /// Where it holds it, in the cloth's frame [m]; `None` is where the particles are at the time (at rest, for a new
+    /// cloth). The particles move there within one step, evenly over the substeps.
+    pub target: Option<Vec3>,
+    /// Who made it.
+    pub author: PinAuthor,
+}
+
+/// Which particles a pin holds.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[non_exhaustive]
+pub enum PinSelection {
+    /// The particle with this index.
+    Particle(u32),
+    /// The particle at this column and row of a grid.
+    Cell(UVec2),
+    /// A corner of a grid.
+    Corner(GridCorner),
+    /// An edge of a grid.
+    Edge(GridEdge),
+    /// Every particle that lies within a ball at rest.
+    Within {
+        /// Its centre, in the cloth's frame [m].
+        center: Vec3,
+        /// Its radius [m].
+        radius: f32,
+    },
+}
+
+/// A corner of a grid, seen from the front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub enum GridCorner {
+    /// Row 0, column 0.
+    TopLeft,
+    /// Row 0, last column.
+    TopRight,
+    /// Last row, column 0.
+    BottomLeft,
+    /// Last row, last column.
+    BottomRight,
+}
+
+impl GridCorner {
+    /// All four.
+    pub const ALL: [Self; 4] = [
+        Self::TopLeft,
+        Self::TopRight,
+        Self::BottomLeft,
+        Self::BottomRight,
+    ];
+    /// The upper two.
+    pub const TOP: [Self; 2] = [Self::TopLeft, Self::TopRight];
+}
+
+/// An edge of a grid, seen from the front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub enum GridEdge {
+    /// Row 0.
+    Top,
+    /// The last row.
+    Bottom,
+    /// Column 0.
+    Left,
+    /// The last column.
+    Right,
+}
+
+/// Who made a pin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+pub enum PinAuthor {
+    /// The game.
+    #[default]
+    Scene,
+    /// The player, while dragging; see [`ClothPins::release_user_pins`].
+    User,
+}
+
+impl ClothPin {
+    /// Holds particles where they are.
+    pub fn new(selection: PinSelection) -> Self {
+        Self {
+            selection,
+            target: None,
+            author: PinAuthor::Scene,
+        }
+    }
+
+    /// Holds one particle at a point of the cloth's frame [m].
+    pub fn at(particle: u32, target: Vec3) -> Self {
+        Self {
+            target: Some(target),
+            ..Self::new(PinSelection::Particle(particle))
+        }
+    }
+}
+
+impl ClothPins {
+    fn of(selections: impl IntoIterator<Item = PinSelection>) -> Self {
+        Self {
+            pins: selections.into_iter().map(ClothPin::new).collect(),
+        }
+    }
+
+    /// Corners of a grid.
+    pub fn corners(corners: impl IntoIterator<Item = GridCorner>) -> Self {
+        Self::of(corners.into_iter().map(PinSelection::Corner))
+    }
+
+    /// Edges of a grid.
+    pub fn edges(edges: impl IntoIterator<Item = GridEdge>) -> Self {
+        Self::of(edges.into_iter().map(PinSelection::Edge))
+    }
+
+    /// Particles by index.
+    pub fn particles(particles: impl IntoIterator<Item = u32>) -> Self {
+        Self::of(particles.into_iter().map(PinSelection::Particle))
+    }
+
+    /// Every particle that lies within a ball (in the cloth's frame [m]) at rest.
+    pub fn within(center: Vec3, radius: f32) -> Self {
+        Self::of([PinSelection::Within { center, radius }])
+    }
+
+    /// Every particle of `cloth` for whose rest position (in the entity's own space [m]) `held` is true.
+    pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
+        let rest = cloth.rest_positions();
+        Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))
+    }
+
+    /// Adds a pin.
+    pub fn with(mut self, pin: ClothPin) -> Self {
+        self.pins.push(pin);
+        self
+    }
+
+    /// Whether the player made any of the pins.
+    pub fn has_user_pins(&self) -> bool {
+        self.pins.iter().any(|pin| pin.author == PinAuthor::User)
+    }
+
+    /// Removes the pins that the player made, and tells how many there were.
+    pub fn release_user_pins(&mut self) -> usize {
+        let before = self.pins.len();
+        self.pins.retain(|pin| pin.author != PinAuthor::User);
+        before - self.pins.len()
+    }
+}
+
+impl PinSelection {
+    /// The particles that are selected.
+    ///
+    /// # Errors
+    /// [`ClothErrorKind::ParticleOutOfRange`]; [`ClothErrorKind::NotAGrid`]; a ball whose radius is negative or not
+    /// finite.
+    pub fn particles(&self, topology: &Topology) -> Result<Vec<u32>, ClothErrorKind> {
+        let particles = topology.particles();
+        let grid = || {
+            topology.grid.ok_or_else(|| ClothErrorKind::NotAGrid {
+                field: "ClothPins".into(),
+                value: format!("{self:?}"),
+            })
+        };
+        let in_range = |value: u32| {
+            if (value as usize) < particles {
+                Ok(value)
+            } else {
+                Err(ClothErrorKind::ParticleOutOfRange {
+                    field: "ClothPins".into(),
+                    value,
+                    particles,
+                })
+            }
+        };
+        Ok(match *self {
+            Self::Particle(particle) => vec![in_range(particle)?],
+            Self::Cell(at) => {
+                let size = grid()?;
+                // A column beyond the last must not wrap into the next row.
+                let inside = at.x < size.x && at.y < size.y;
+                let particle = at.y.saturating_mul(size.x).saturating_add(at.x);
+                vec![in_range(if inside {
+                    particle
+                } else {
+                    particle.max(particles as u32)
+                })?]
+            }
+            Self::Corner(corner) => {
+                let last = grid()? - 1;
+                let at = match corner {
+                    GridCorner::TopLeft => UVec2::ZERO,
+                    GridCorner::TopRight => UVec2::new(last.x, 0),
+                    GridCorner::BottomLeft => UVec2::new(0, last.y),
+                    GridCorner::BottomRight => last,
+                };
+                vec![at.y * (last.x + 1) + at.x]
+            }
+            Self::Edge(edge) => {
+                let UVec2 {
+                    x: columns,
+                    y: rows,
+                } = grid()?;
+                match edge {
+                    GridEdge::Top => (0..columns).collect(),
+                    GridEdge::Bottom => (0..columns).map(|c| (rows - 1) * columns + c).collect(),
+                    GridEdge::Left => (0..rows).map(|r| r * columns).collect(),
+                    GridEdge::Right => (0..rows).map(|r| r * columns + columns - 1).collect(),
+                }
+            }
+            Self::Within { center, radius } => {
+                let checks = [
+                    ClothErrorKind::vector("ClothPins.center", center),
+                    ClothErrorKind::number(
+                        "ClothPins.radius",
+                        radius,
+                        |r| r >= 0.0 && r.is_finite(),
+                        "at least 0 and finite [m]",
+                    ),
+                ];
+                if let Some(error) = checks.into_iter().flatten().next() {
+                    return Err(error);
+                }
+                let inside = |p: &Vec3| p.distance_squared(center) <= radius * radius;
+                (0..particles as u32)
+                    .filter(|&i| inside(&topology.rest_positions[i as usize]))
+                    .collect()
+            }
+        })
+    }
+}
+
+/// Turns changed pins into the list of held particles, and sets masses.
+///
+/// A pin that is wrong is reported and left out; the others hold.
+pub fn apply_pins(
+    mut cloths: Query<
+        (
+            Entity,
+            Ref<ClothPins>,
+            Ref<ClothTopology>,
+            Ref<ClothMaterial>,
+            &mut ClothParticles,
+            &mut ClothStatus,
+        ),
+        With<Cloth>,
+    >,
+    commands: ParallelCommands,
+) {
+    for (entity, pins, topology, material, mut particles, mut status) in &mut cloths {
+        if !(pins.is_changed() || topology.is_changed() || material.is_changed())
+            || particles.is_empty()
+        {
+            continue;
+        }
+        let mut errors = Vec::new();
+        let mut held = Vec::new();
+        for pin in &pins.pins {
+            if let Some(error) = pin
+                .target
+                .and_then(|t| ClothErrorKind::vector("ClothPins.target", t))
+            {
+                errors.push(error);
+                continue;
+            }
+            match pin.selection.particles(&topology) {
+                Ok(selected) => {
+                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)))
+                }
+                Err(error) => errors.push(error),
+            }
+        }
+        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Pins, errors);
+        particles.set_pins(&held);
+        let errors = material.errors();
+        if errors.is_empty() {
+            particles.set_masses(&topology.areas, material.areal_density);
+        }
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Material,
+            errors,
+        );
+    }
+}
+
+impl ClothParticles {
+    /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
+    fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
+        let mut held: Vec<Held> = pins
+            .iter()
+            .map(|&(particle, target)| Held {
+                particle,
+                target: target.unwrap_or_else(|| {
+                    let before = self
+                        .pins
+                        .binary_search_by_key(&particle, |pin| pin.particle);
+                    before.map_or_else(
+                        |_| self.position(particle as usize),
+                        |at| self.pins[at].target,
+                    )
+                }),
+            })
+            .collect();
+        // Stable, so that the last of several pins of a particle can be kept.
+        held.sort_by_key(|pin| pin.particle);
+        held.reverse();
+        held.dedup_by_key(|pin| pin.particle);
+        held.reverse();
+        self.pins = held;
+    }
+}

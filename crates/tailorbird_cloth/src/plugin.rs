@@ -1,0 +1,146 @@
+//! The plugin of this crate.
+
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::{
+    intern::Interned,
+    prelude::*,
+    schedule::{ScheduleLabel, SingleThreadedExecutor},
+};
+use bevy_transform::TransformSystems;
+
+use crate::{
+    bounds::update_bounds,
+    build::build_topology,
+    collider::{ClothColliders, collide_half_space, collide_sphere, snapshot_colliders},
+    diagnostics::{ClothStepTime, start_clock, stop_clock},
+    forces::apply_forces,
+    frame::{advance_frames, prepare_frames},
+    grab::apply_grab,
+    normals::recompute_normals,
+    pins::apply_pins,
+    prelude::*,
+    schedule::run_substeps,
+    solver::{solve_constraints, verlet_step},
+    step::{begin_step, step_runs},
+    validate::guard_finite,
+    wind::apply_wind,
+};
+
+/// Simulates cloth. Needs `TimePlugin` and `TaskPoolPlugin` (both part of Bevy's `MinimalPlugins`), nothing else.
+pub struct ClothPlugin {
+    schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl ClothPlugin {
+    /// Simulates in this schedule. One step covers the time that `Time` tells there, so a schedule with a fixed time step is
+    /// the one to choose.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Default for ClothPlugin {
+    /// Simulates in `FixedPostUpdate`.
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl Plugin for ClothPlugin {
+    fn build(&self, app: &mut App) {
+        register_types(app);
+        app.init_resource::<ClothSettings>()
+            .init_resource::<ClothStep>()
+            .init_resource::<ClothStepTime>()
+            .init_resource::<ClothColliders>()
+            .init_resource::<Wind>();
+
+        app.configure_sets(
+            self.schedule,
+            (
+                ClothSystems::Prepare,
+                ClothSystems::Simulate,
+                ClothSystems::Writeback,
+            )
+                .chain()
+                .before(TransformSystems::Propagate),
+        )
+        .add_systems(
+            self.schedule,
+            (
+                (
+                    start_clock,
+                    begin_step,
+                    prepare_frames,
+                    build_topology,
+                    apply_pins,
+                    (snapshot_colliders, apply_grab, apply_forces, apply_wind)
+                        .chain()
+                        .run_if(step_runs),
+                )
+                    .chain()
+                    .in_set(ClothSystems::Prepare),
+                run_substeps
+                    .run_if(step_runs)
+                    .in_set(ClothSystems::Simulate),
+                (
+                    guard_finite.run_if(step_runs),
+                    recompute_normals,
+                    update_bounds,
+                    stop_clock,
+                )
+                    .chain()
+                    .in_set(ClothSystems::Writeback),
+            ),
+        );
+
+        app.init_schedule(ClothSubstep)
+            .edit_schedule(ClothSubstep, |schedule| {
+                // The systems share cloths out to threads themselves; a substep is too short to share systems out.
+                schedule.set_executor(SingleThreadedExecutor::new());
+            })
+            .configure_sets(
+                ClothSubstep,
+                (
+                    ClothSubstepSystems::Integrate,
+                    ClothSubstepSystems::Solve,
+                    ClothSubstepSystems::Collide,
+                )
+                    .chain(),
+            )
+            .add_systems(
+                ClothSubstep,
+                (
+                    (advance_frames, verlet_step)
+                        .chain()
+                        .in_set(ClothSubstepSystems::Integrate),
+                    solve_constraints.in_set(ClothSubstepSystems::Solve),
+                    (collide_sphere, collide_half_space)
+                        .chain()
+                        .in_set(ClothSubstepSystems::Collide),
+                ),
+            );
+    }
+}
+
+fn register_types(app: &mut App) {
+    app.register_type::<Cloth>()
+        .register_type::<ClothMaterial>()
+        .register_type::<ClothPins>()
+        .register_type::<ClothGrab>()
+        .register_type::<ClothForces>()
+        .register_type::<ClothShading>()
+        .register_type::<ClothStatus>()
+        .register_type::<ClothTopology>()
+        .register_type::<ClothFrame>()
+        .register_type::<ClothParticles>()
+        .register_type::<ClothNormals>()
+        .register_type::<ClothBounds>()
+        .register_type::<ClothCollider>()
+        .register_type::<ClothSettings>()
+        .register_type::<ClothStep>()
+        .register_type::<ClothStepTime>()
+        .register_type::<Wind>();
+}

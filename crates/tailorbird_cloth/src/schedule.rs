@@ -1,0 +1,44 @@
+//! Sets, and the schedule that runs once per substep.
+
+use std::time::Instant;
+
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+
+use crate::{diagnostics::ClothStepTime, step::ClothStep};
+
+/// The parts of a step, in order, in the schedule that was given to [`ClothPlugin::new`](crate::plugin::ClothPlugin::new).
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ClothSystems {
+    /// Builds new cloths, reads transforms, colliders, pins, wind and forces.
+    Prepare,
+    /// Runs [`ClothSubstep`] once per substep.
+    Simulate,
+    /// Guards the state; computes normals and bounds.
+    Writeback,
+}
+
+/// Runs once per substep. [`ClothStep`] tells which it is and how long it lasts.
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ClothSubstep;
+
+/// The parts of a substep, in order, in [`ClothSubstep`]. A game puts its own systems between them.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ClothSubstepSystems {
+    /// Moves the cloths' frames, pins and particles.
+    Integrate,
+    /// Holds the constraints.
+    Solve,
+    /// Keeps particles out of colliders.
+    Collide,
+}
+
+/// Runs [`ClothSubstep`] as often as the step has substeps, and measures it.
+pub fn run_substeps(world: &mut World) {
+    let substeps = world.resource::<ClothStep>().substeps;
+    let start = Instant::now();
+    for substep in 0..substeps {
+        world.resource_mut::<ClothStep>().substep = substep;
+        world.run_schedule(ClothSubstep);
+    }
+    world.resource_mut::<ClothStepTime>().simulate = start.elapsed();
+}

@@ -1,0 +1,193 @@
+//! Particles against a moving sphere.
+
+use bevy_math::Vec3;
+
+use super::contact::Path;
+use crate::points::Points;
+
+/// A sphere during one substep, in the frame of the particles.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingSphere {
+    /// Centre at the start [m].
+    pub from: Vec3,
+    /// Centre at the end [m].
+    pub to: Vec3,
+    /// Rotation during the substep: axis times angle [rad].
+    pub rotation: Vec3,
+    /// Radius, margin included [m].
+    pub radius: f32,
+    /// Coulomb friction [-].
+    pub friction: f32,
+}
+
+impl MovingSphere {
+    /// Keeps one particle out. `path` is relative to the centre. `None` where there is no contact.
+    ///
+    /// A particle that enters from outside is stopped at the tangent plane where it entered, however far it went: nothing
+    /// tunnels at any speed. Along that plane it slides by a radius at most: further on, the sphere would have let it go.
+    /// One that was inside before is pushed to the nearest point of the surface.
+    #[inline]
+    pub fn collide(&self, mut path: Path) -> Option<Path> {
+        let r2 = self.radius * self.radius;
+        let travel = path.to - path.from;
+        let t2 = travel.length_squared();
+        let start2 = path.from.length_squared();
+        let approach = path.from.dot(travel);
+        let inside = path.to.length_squared() < r2;
+        // The nearest point of the path's line to the centre lies ahead, not beyond the end, and inside.
+        let through =
+            approach < 0.0 && -approach < t2 && start2 * t2 - approach * approach < r2 * t2;
+        let normal = if start2 >= r2 && approach < 0.0 && (inside || through) {
+            let root = (approach * approach - t2 * (start2 - r2)).max(0.0).sqrt();
+            let hit = path.from + travel * ((-approach - root) / t2).max(0.0);
+            let normal = hit.normalize_or(Vec3::Y);
+            let sliding = (path.to - hit).reject_from_normalized(normal);
+            path.to += sliding.clamp_length_max(self.radius) - sliding;
+            normal
+        } else if inside {
+            // At the very centre every direction is as near; up is where cloth comes from.
+            path.to.normalize_or(Vec3::Y)
+        } else {
+            return None;
+        };
+        let depth = self.radius - normal.dot(path.to);
+        let surface = self.rotation.cross(normal) * self.radius;
+        Some(path.resolve(normal, depth.max(0.0), self.friction, surface))
+    }
+}
+
+/// Keeps all free particles (`inv_mass` > 0) out of a sphere; returns how many touch it.
+pub fn collide_all(
+    sphere: &MovingSphere,
+    inv_mass: &[f32],
+    position: &mut Points,
+    previous: &mut Points,
+) -> usize {
+    let mut contacts = 0;
+    for (i, w) in inv_mass.iter().enumerate() {
+        if *w > 0.0 {
+            contacts += usize::from(collide_one(sphere, i, position, previous));
+        }
+    }
+    contacts
+}
+
+/// Keeps one particle out of a sphere; returns whether it touches.
+#[inline]
+pub fn collide_one(
+    sphere: &MovingSphere,
+    i: usize,
+    position: &mut Points,
+    previous: &mut Points,
+) -> bool {
+    let path = Path {
+        from: previous.get(i) - sphere.from,
+        to: position.get(i) - sphere.to,
+    };
+    let Some(path) = sphere.collide(path) else {
+        return false;
+    };
+    position.set(i, path.to + sphere.to);
+    previous.set(i, path.from + sphere.from);
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn sphere(radius: f32, friction: f32) -> MovingSphere {
+        MovingSphere {
+            from: Vec3::ZERO,
+            to: Vec3::ZERO,
+            rotation: Vec3::ZERO,
+            radius,
+            friction,
+        }
+    }
+
+    fn point(range: f32) -> impl Strategy<Value = Vec3> {
+        (-range..range, -range..range, -range..range).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_ends_inside(from in point(3.0), to in point(3.0), radius in 0.01f32..2.0, friction in 0.0f32..2.0) {
+            let sphere = sphere(radius, friction);
+            let end = sphere.collide(Path { from, to }).map_or(to, |path| path.to);
+            prop_assert!(end.length() >= radius * (1.0 - 1e-5));
+        }
+
+        #[test]
+        fn nothing_passes_through(
+            from in point(3.0), offset in point(1.0), radius in 0.05f32..1.0, speed in 0.1f32..100.0,
+        ) {
+            prop_assume!(from.length() > radius * 1.01);
+            let sphere = sphere(radius, 0.0);
+            let aim = offset.normalize_or_zero() * (radius * 0.9 * offset.length().min(1.0));
+            let to = from + (aim - from).normalize() * speed;
+            let end = sphere.collide(Path { from, to }).map_or(to, |path| path.to);
+            for k in 0..=100 {
+                let p = from.lerp(end, k as f32 / 100.0);
+                prop_assert!(p.length() >= radius * 0.999, "{p}: {} {radius}", p.length());
+            }
+        }
+    }
+
+    #[test]
+    fn a_shot_through_the_middle_stops_at_the_near_side() {
+        let path = Path {
+            from: Vec3::new(0.1, 0.0, 5.0),
+            to: Vec3::new(0.1, 0.0, -50.0),
+        };
+        let end = sphere(0.5, 0.0).collide(path).expect("contact").to;
+        assert!(end.z > 0.3 && end.length() < 0.75, "{end}");
+    }
+
+    #[test]
+    fn friction_above_the_slope_holds_and_below_it_slides() {
+        let slope = Vec3::new(0.6, 0.8, 0.0);
+        let tangent = Vec3::new(0.8, -0.6, 0.0);
+        let path = Path {
+            from: slope,
+            to: slope + Vec3::NEG_Y * 0.01,
+        };
+        let slid = |friction: f32| {
+            let path = sphere(1.0, friction).collide(path).expect("contact");
+            (path.to - path.from).dot(tangent)
+        };
+        // tan of the slope's angle is 0.75.
+        assert!(slid(0.8).abs() < 1e-4);
+        assert!((slid(0.0) - 0.006).abs() < 1e-4);
+        assert!(slid(0.3) > 1e-3 && slid(0.3) < slid(0.0));
+    }
+
+    #[test]
+    fn a_spinning_sphere_drags_along() {
+        let spinning = MovingSphere {
+            rotation: Vec3::Y * 0.1,
+            ..sphere(1.0, 1.0)
+        };
+        let path = Path {
+            from: Vec3::X,
+            to: Vec3::X * 0.8,
+        };
+        let end = spinning.collide(path).expect("contact").to;
+        assert!(end.z < -0.05, "{end}");
+    }
+
+    #[test]
+    fn a_particle_that_starts_inside_is_put_outside_without_speed() {
+        let inside = Vec3::new(0.1, 0.0, 0.0);
+        let path = sphere(1.0, 0.0)
+            .collide(Path {
+                from: inside,
+                to: inside,
+            })
+            .expect("contact");
+        assert!((path.to.length() - 1.0).abs() < 1e-6);
+        assert!((path.to - path.from).length() < 1e-6);
+    }
+}

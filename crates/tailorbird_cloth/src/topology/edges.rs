@@ -1,0 +1,205 @@
+//! Triangle meshes: edges, diagonals and the springs across them.
+
+use std::collections::HashSet;
+
+use bevy_math::Vec3;
+
+use super::{
+    Neighbors, Topology, constraints::ConstraintFamily, constraints::DistanceConstraints,
+    weld::weld,
+};
+use crate::error::ClothErrorKind;
+
+/// A triangle whose area is below this part of its longest edge squared counts as degenerate.
+const DEGENERATE: f32 = 1e-6;
+
+/// How close the square of a triangle's longest edge must come to the sum of the other two squares (or exceed it) for
+/// that edge to be a diagonal. 1 is a right angle.
+const DIAGONAL: f32 = 0.9;
+
+/// Builds the topology of a triangle mesh. Areas and revision are left to the caller.
+pub(super) fn build(
+    positions: &[Vec3],
+    indices: &[u32],
+    weld_distance: f32,
+    scale: Vec3,
+) -> Result<Topology, ClothErrorKind> {
+    let welded = weld(positions, weld_distance);
+    let rest_positions: Vec<Vec3> = welded.positions.iter().map(|p| *p * scale).collect();
+    let mut topology = Topology {
+        particle_of_vertex: welded.particle_of_vertex,
+        rest_positions,
+        ..Default::default()
+    };
+    triangles(indices, &mut topology);
+    if topology.triangles.is_empty() {
+        return Err(ClothErrorKind::NoTriangles {
+            vertices: positions.len(),
+            triangles: 0,
+        });
+    }
+    let springs = springs(&topology.triangles, &topology.rest_positions);
+    for (family, pairs) in ConstraintFamily::ALL.into_iter().zip(&springs) {
+        topology
+            .constraints
+            .push_colored(family, &topology.rest_positions, pairs);
+    }
+    topology.neighbors = Neighbors::new(
+        topology.rest_positions.len(),
+        edges_of(&topology.constraints),
+    );
+    Ok(topology)
+}
+
+fn edges_of(constraints: &DistanceConstraints) -> impl Iterator<Item = [u32; 2]> + Clone + '_ {
+    constraints
+        .family(ConstraintFamily::Stretch)
+        .chain(constraints.family(ConstraintFamily::Shear))
+        .map(|(ends, _)| ends)
+}
+
+/// Fills in the triangles, without degenerate and duplicate ones, and lists those.
+fn triangles(indices: &[u32], topology: &mut Topology) {
+    let mut seen = HashSet::new();
+    let (mut degenerate, mut duplicate) = ((0, 0), (0, 0));
+    let count = |tally: &mut (usize, usize), triangle| {
+        if tally.0 == 0 {
+            tally.1 = triangle;
+        }
+        tally.0 += 1;
+    };
+    for (number, corners) in indices.as_chunks::<3>().0.iter().enumerate() {
+        let triangle = corners.map(|v| topology.particle_of_vertex[v as usize]);
+        let [a, b, c] = triangle.map(|i| topology.rest_positions[i as usize]);
+        let longest = (b - a)
+            .length_squared()
+            .max((c - b).length_squared())
+            .max((a - c).length_squared());
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let mut sorted = triangle;
+        sorted.sort_unstable();
+        if sorted[0] == sorted[1] || sorted[1] == sorted[2] || !(area > DEGENERATE * longest) {
+            count(&mut degenerate, number);
+        } else if !seen.insert(sorted) {
+            count(&mut duplicate, number);
+        } else {
+            topology.triangles.push(triangle);
+            topology.source_triangles.push(number as u32);
+        }
+    }
+    if let (count @ 1.., first) = degenerate {
+        topology
+            .dropped
+            .push(ClothErrorKind::DegenerateTriangles { count, first });
+    }
+    if let (count @ 1.., first) = duplicate {
+        topology
+            .dropped
+            .push(ClothErrorKind::DuplicateTriangles { count, first });
+    }
+}
+
+/// One side of an edge: the edge with the lower particle first, the opposite corner, whether the edge is the
+/// triangle's diagonal.
+type Side = ([u32; 2], u32, bool);
+
+/// The pairs of particles joined by springs, by family in the order of [`ConstraintFamily::ALL`].
+///
+/// An edge that is the longest of a right-angled or obtuse triangle on every side is a diagonal: it and the other
+/// diagonal of its quad resist shear. Every other edge resists stretch, and the corners opposite to it are joined
+/// against bending.
+fn springs(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> [Vec<[u32; 2]>; 3] {
+    let mut sides: Vec<Side> = Vec::with_capacity(triangles.len() * 3);
+    for &[a, b, c] in triangles {
+        for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
+            let [p, q, o] = [from, to, opposite].map(|i| rest_positions[i as usize]);
+            let others = (p - o).length_squared() + (q - o).length_squared();
+            let diagonal = (q - p).length_squared() >= DIAGONAL * others;
+            sides.push(([from.min(to), from.max(to)], opposite, diagonal));
+        }
+    }
+    sides.sort_unstable();
+
+    let mut joined: HashSet<[u32; 2]> = sides.iter().map(|side| side.0).collect();
+    let [mut bend, mut shear, mut stretch] = [const { Vec::new() }; 3];
+    for sides in sides.chunk_by(|a, b| a.0 == b.0) {
+        let edge = sides[0].0;
+        let diagonal = sides.len() > 1 && sides.iter().all(|side| side.2);
+        if diagonal { &mut shear } else { &mut stretch }.push(edge);
+        for pair in sides.windows(2) {
+            let across = [pair[0].1.min(pair[1].1), pair[0].1.max(pair[1].1)];
+            if across[0] != across[1] && joined.insert(across) {
+                if diagonal { &mut shear } else { &mut bend }.push(across);
+            }
+        }
+    }
+    [bend, shear, stretch]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::Cloth;
+
+    /// A sheet of 3 × 3 vertices, one unit apart, whose cells are cut along the same diagonal.
+    fn sheet() -> (Vec<Vec3>, Vec<u32>) {
+        let positions = (0..9)
+            .map(|i| Vec3::new((i % 3) as f32, -((i / 3) as f32), 0.0))
+            .collect();
+        let indices = [0u32, 1, 3, 4]
+            .into_iter()
+            .flat_map(|v| [v, v + 3, v + 4, v, v + 4, v + 1])
+            .collect();
+        (positions, indices)
+    }
+
+    fn count(topology: &Topology, family: ConstraintFamily) -> usize {
+        topology.constraints.family(family).count()
+    }
+
+    #[test]
+    fn diagonals_of_a_triangulated_grid_are_shear_springs() {
+        let (positions, indices) = sheet();
+        let topology =
+            Topology::build(&Cloth::mesh(positions, indices).shape, Vec3::ONE).expect("valid");
+        assert_eq!(count(&topology, ConstraintFamily::Stretch), 12);
+        assert_eq!(count(&topology, ConstraintFamily::Shear), 8);
+        assert_eq!(count(&topology, ConstraintFamily::Bend), 4);
+        let total: f32 = topology.areas.iter().sum();
+        assert!((total - 4.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn broken_triangles_are_dropped_and_counted() {
+        let (positions, mut indices) = sheet();
+        let whole = indices.len() / 3;
+        indices.extend([0, 0, 1, 0, 1, 2, 4, 0, 3]);
+        let topology =
+            Topology::build(&Cloth::mesh(positions, indices).shape, Vec3::ONE).expect("valid");
+        assert_eq!(topology.triangles.len(), whole);
+        assert_eq!(
+            topology.dropped,
+            [
+                ClothErrorKind::DegenerateTriangles { count: 2, first: 8 },
+                ClothErrorKind::DuplicateTriangles {
+                    count: 1,
+                    first: 10
+                },
+            ]
+        );
+    }
+
+    #[test]
+    fn a_mesh_of_nothing_but_slivers_is_refused() {
+        let line = [Vec3::ZERO, Vec3::X, Vec3::X * 2.0];
+        let error = Topology::build(&Cloth::mesh(line, [0, 1, 2]).shape, Vec3::ONE)
+            .expect_err("degenerate");
+        assert_eq!(
+            error,
+            ClothErrorKind::NoTriangles {
+                vertices: 3,
+                triangles: 0
+            }
+        );
+    }
+}

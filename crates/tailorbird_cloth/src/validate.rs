@@ -1,0 +1,132 @@
+//! Checks: of shapes when they are built, of the state after each step.
+
+use bevy_ecs::prelude::*;
+use bevy_math::UVec2;
+use bevy_reflect::prelude::*;
+
+use crate::{
+    cloth::{Cloth, ClothShape},
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    particles::ClothParticles,
+    step::{ClothStep, for_each_cloth},
+};
+
+/// A cloth was put back to an earlier state.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub struct ClothReset {
+    /// The cloth.
+    pub entity: Entity,
+    /// Why.
+    pub reason: ResetReason,
+}
+
+/// Why a cloth was put back to an earlier state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[non_exhaustive]
+pub enum ResetReason {
+    /// A position became infinite or NaN; the cloth is back at the start of the step, without velocity.
+    NonFinite,
+}
+
+/// What is wrong with a shape, without building it.
+pub(crate) fn check_shape(shape: &ClothShape) -> Result<(), ClothErrorKind> {
+    /// The most particles of a grid: as many as f32 counts exactly.
+    const MOST_PARTICLES: u64 = 1 << 24;
+    match shape {
+        ClothShape::Grid {
+            size,
+            resolution,
+            origin,
+        } => {
+            if !size.is_finite() || size.min_element() <= 0.0 {
+                return Err(ClothErrorKind::Size { value: *size });
+            }
+            let particles = u64::from(resolution.x) * u64::from(resolution.y);
+            if resolution.cmplt(UVec2::splat(2)).any() || particles > MOST_PARTICLES {
+                return Err(ClothErrorKind::Resolution { value: *resolution });
+            }
+            match ClothErrorKind::vector("Cloth grid origin", origin.extend(0.0)) {
+                Some(error) => Err(error),
+                None => Ok(()),
+            }
+        }
+        ClothShape::Mesh {
+            positions,
+            indices,
+            weld_distance,
+        } => {
+            if let Some(error) = ClothErrorKind::number(
+                "Cloth mesh weld_distance",
+                *weld_distance,
+                |d| d >= 0.0 && d.is_finite(),
+                "at least 0 and finite [m]",
+            ) {
+                return Err(error);
+            }
+            if let Some((vertex, value)) =
+                positions.iter().enumerate().find(|(_, p)| !p.is_finite())
+            {
+                return Err(ClothErrorKind::NonFinitePosition {
+                    vertex,
+                    value: *value,
+                });
+            }
+            if indices.len() % 3 != 0 {
+                return Err(ClothErrorKind::IndexCount {
+                    value: indices.len(),
+                });
+            }
+            let vertices = positions.len();
+            if let Some((at, value)) = indices
+                .iter()
+                .enumerate()
+                .find(|(_, i)| **i as usize >= vertices)
+            {
+                return Err(ClothErrorKind::IndexOutOfRange {
+                    at,
+                    value: *value,
+                    vertices,
+                });
+            }
+            if indices.is_empty() {
+                return Err(ClothErrorKind::NoTriangles {
+                    vertices,
+                    triangles: 0,
+                });
+            }
+            Ok(())
+        }
+    }
+}
+
+/// Puts a cloth whose state is not finite back to the start of the step.
+pub fn guard_finite(
+    step: Res<ClothStep>,
+    mut cloths: Query<(Entity, &mut ClothParticles, &mut ClothStatus), With<Cloth>>,
+    commands: ParallelCommands,
+) {
+    for_each_cloth!(step, cloths, |(entity, mut particles, mut status): (
+        Entity,
+        Mut<ClothParticles>,
+        Mut<ClothStatus>
+    )| {
+        if particles.position.is_finite() && particles.previous_position.is_finite() {
+            return;
+        }
+        let particle = particles
+            .positions()
+            .position(|p| !p.is_finite())
+            .unwrap_or_default();
+        particles.reset_to_step_start();
+        let error = ClothErrorKind::NonFiniteState { particle };
+        if status.is_ok_for(ErrorSource::State) {
+            ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, [error]);
+        }
+        commands.command_scope(|mut commands| {
+            commands.trigger(ClothReset {
+                entity,
+                reason: ResetReason::NonFinite,
+            });
+        });
+    });
+}

@@ -1,0 +1,48 @@
+//! The project's chores. `cargo demo` is short for `cargo xtask demo`; see `.cargo/config.toml`.
+
+mod demo;
+mod fabric;
+mod textures;
+
+use std::{
+    error::Error,
+    ffi::OsString,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(about)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install what the demo needs where that is missing, then run it
+    Demo {
+        /// Passed on to the demo
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
+    /// Weave the fabric textures in assets/textures
+    Textures,
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    match Arguments::parse().task {
+        Task::Demo { arguments } => Ok(demo::run(&workspace(), &arguments)?),
+        Task::Textures => {
+            textures::write(&workspace().join("assets/textures"))?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
+}
+
+fn workspace() -> PathBuf {
+    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
+    xtask.parent().unwrap_or(xtask).to_owned()
+}

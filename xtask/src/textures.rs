@@ -1,0 +1,121 @@
+//! Writes fabrics as the three textures that Bevy's `StandardMaterial` takes.
+
+use std::{error::Error, fs, fs::File, io::BufWriter, path::Path};
+
+use image::{
+    ExtendedColorType, ImageEncoder,
+    codecs::png::{CompressionType, FilterType, PngEncoder},
+};
+
+use crate::fabric::{self, Fabric, Texel};
+
+/// Pixels along each side of a texture.
+const SIZE: usize = 512;
+
+/// Samples along each side of a pixel.
+const SAMPLES: usize = 3;
+
+/// How much flatter than the yarns the normals are, so that light on them does not flicker from afar \[-\].
+const RELIEF: f32 = 0.7;
+
+/// Writes every fabric into `folder`.
+///
+/// # Errors
+///
+/// When a file cannot be written.
+pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(folder)?;
+    for (name, fabric) in [("cotton", fabric::cotton()), ("denim", fabric::denim())] {
+        let texels = sample(&fabric);
+        save(
+            &folder.join(format!("{name}_albedo.png")),
+            texels.iter().map(albedo),
+        )?;
+        save(
+            &folder.join(format!("{name}_metallic_roughness.png")),
+            texels.iter().map(metallic_roughness),
+        )?;
+        save(
+            &folder.join(format!("{name}_normal.png")),
+            normals(&texels, fabric.yarns),
+        )?;
+    }
+    Ok(())
+}
+
+/// The mean of the samples of each pixel, row by row from the top.
+fn sample(fabric: &Fabric) -> Vec<Texel> {
+    let place = |pixel: usize, sample: usize| {
+        (pixel as f32 + (sample as f32 + 0.5) / SAMPLES as f32) / SIZE as f32
+    };
+    let weight = 1.0 / (SAMPLES * SAMPLES) as f32;
+    let pixel = |index: usize| {
+        let (column, row) = (index % SIZE, index / SIZE);
+        let mut mean = Texel::default();
+        for sample in 0..SAMPLES * SAMPLES {
+            let texel = fabric.at(
+                place(column, sample % SAMPLES),
+                place(row, sample / SAMPLES),
+            );
+            mean.height += weight * texel.height;
+            mean.openness += weight * texel.openness;
+            for (mean, color) in mean.color.iter_mut().zip(texel.color) {
+                *mean += weight * color;
+            }
+        }
+        mean
+    };
+    (0..SIZE * SIZE).map(pixel).collect()
+}
+
+/// sRGB colour, darker in the gaps: they are too small for a renderer's own shadows.
+fn albedo(texel: &Texel) -> [u8; 3] {
+    let shade = 0.5 + 0.5 * texel.openness;
+    texel.color.map(|color| byte(srgb(color * shade)))
+}
+
+/// glTF's channels: occlusion, roughness, metallic.
+fn metallic_roughness(texel: &Texel) -> [u8; 3] {
+    let occlusion = 0.4 + 0.6 * texel.openness;
+    let roughness = 0.97 - 0.15 * texel.openness;
+    [byte(occlusion), byte(roughness), 0]
+}
+
+/// Tangent-space normals of the height field, with y up the image (OpenGL's convention).
+fn normals(texels: &[Texel], yarns: u32) -> impl Iterator<Item = [u8; 3]> {
+    let pixels_per_spacing = SIZE as f32 / yarns as f32;
+    let height = |column: usize, row: usize| texels[row % SIZE * SIZE + column % SIZE].height;
+    (0..SIZE * SIZE).map(move |index| {
+        let (column, row) = (index % SIZE, index / SIZE);
+        let slope = |ahead: f32, behind: f32| RELIEF * pixels_per_spacing * (ahead - behind) / 2.0;
+        let right = slope(height(column + 1, row), height(column + SIZE - 1, row));
+        let down = slope(height(column, row + 1), height(column, row + SIZE - 1));
+        let length = (right * right + down * down + 1.0).sqrt();
+        [-right, down, 1.0].map(|axis| byte(0.5 + 0.5 * axis / length))
+    })
+}
+
+fn srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+fn byte(share: f32) -> u8 {
+    (255.0 * share.clamp(0.0, 1.0)).round() as u8
+}
+
+fn save(path: &Path, pixels: impl Iterator<Item = [u8; 3]>) -> Result<(), Box<dyn Error>> {
+    let bytes: Vec<u8> = pixels.flatten().collect();
+    let file = BufWriter::new(File::create(path)?);
+    PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive).write_image(
+        &bytes,
+        SIZE as u32,
+        SIZE as u32,
+        ExtendedColorType::Rgb8,
+    )?;
+    println!("{}", path.display());
+    Ok(())
+}
