@@ -1,8 +1,56 @@
-//! Real-time cloth for Bevy.
+//! Real-time cloth for the Bevy game engine: hangs, blows, drapes, is dragged and pinned.
+//!
+//! ```no_run
+//! # use bevy_app::prelude::*;
+//! # use bevy_asset::prelude::*;
+//! # use bevy_color::Color;
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::prelude::*;
+//! # use bevy_pbr::prelude::*;
+//! # use bevy_transform::prelude::*;
+//! use tailorbird::prelude::*;
+//!
+//! # fn app(app: &mut App) {
+//! app.add_plugins(ClothPlugins::default()).add_systems(Startup, hang_a_curtain);
+//! # }
+//!
+//! fn hang_a_curtain(mut commands: Commands, mut materials: ResMut<Assets<StandardMaterial>>) {
+//!     commands.spawn((
+//!         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
+//!         ClothMaterial::cotton(),
+//!         ClothPins::corners(GridCorner::TOP),
+//!         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.1, 0.1))),
+//!         Transform::from_xyz(-1.0, 2.0, 0.0),
+//!     ));
+//! }
+//! ```
+//!
+//! The simulation is in [`cloth`], a crate of its own that needs no renderer. This crate adds what a game needs on top;
+//! [`ClothPlugins`](plugins::ClothPlugins) lists the parts.
 
 pub use tailorbird_cloth as cloth;
 
+pub mod debug;
+pub mod diagnostics;
+pub mod drag;
+pub mod mesh;
+pub mod picking;
+pub mod plugins;
+pub mod sphere_controls;
+
 /// What most games name.
 pub mod prelude {
+    pub use crate::{
+        debug::{ClothDebugPlugin, ClothGizmos},
+        diagnostics::ClothDiagnosticsPlugin,
+        drag::{
+            ClothDrag, ClothDragPlugin, ClothDragSettings, ClothGrabbed, ClothPinned,
+            ClothReleased, ClothUnpinned,
+        },
+        mesh::{ClothFromMesh, ClothMeshPlugin},
+        picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
+        plugins::ClothPlugins,
+        sphere_controls::{SphereControls, SphereControlsPlugin},
+    };
     pub use tailorbird_cloth::prelude::*;
 }

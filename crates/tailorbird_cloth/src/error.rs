@@ -54,6 +54,14 @@ pub enum ClothErrorKind {
         /// The number of triangles that are not degenerate.
         triangles: usize,
     },
+    /// A mesh asset cannot become a cloth.
+    #[error(
+        "Mesh3d {reason}, must be a triangle list with positions that is kept in the main world"
+    )]
+    UnusableMesh {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The number of indices is not a multiple of three.
     #[error("Cloth mesh has {value} indices, must be a multiple of 3")]
     IndexCount {
@@ -231,7 +239,7 @@ impl ClothStatus {
     /// Replaces what `source` found before by `found`; what is new is logged and triggered.
     ///
     /// Does not touch (and so does not mark as changed) a status that stays as it is.
-    pub(crate) fn update(
+    pub fn update(
         status: &mut Mut<Self>,
         entity: Entity,
         commands: &ParallelCommands,
