@@ -132,20 +132,21 @@ pub fn apply_grab(
                 let patch = hand
                     .patch
                     .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
-                let target = frame.to_frame(hand.target);
                 particles.pulled.clear();
-                particles
-                    .pulled
-                    .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
-                        particle,
-                        target: target + offset,
-                        weight,
-                    }));
-                particles.grabbed =
-                    (!particles.is_pinned(hand.particle as usize)).then_some(Held {
+                particles.grabbed = None;
+                if !particles.is_pinned(hand.particle as usize) {
+                    particles.grabbed = Some(Held {
                         particle: hand.particle,
-                        target,
+                        target: frame.to_frame(hand.target),
                     });
+                    particles
+                        .pulled
+                        .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
+                            particle,
+                            offset,
+                            weight,
+                        }));
+                }
                 None
             }
         };
@@ -194,20 +195,22 @@ impl ClothParticles {
     /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
     /// around it along. `left` substeps remain, this one included.
     pub(crate) fn move_grabbed(&mut self, topology: &ClothTopology, left: u32, seconds: f32) {
-        if let Some(held) = self.grabbed {
-            let i = held.particle as usize;
-            let from = self.position.get(i);
-            let mut to = from + (held.target - from) / left as f32;
-            // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
-            for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
-                let rest =
-                    topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
-                let anchor = self.position.get(neighbor as usize);
-                to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
-            }
-            self.previous_position.set(i, from);
-            self.position.set(i, to);
+        let Some(held) = self.grabbed else {
+            return;
+        };
+        let i = held.particle as usize;
+        let from = self.position.get(i);
+        let mut to = from + (held.target - from) / left as f32;
+        // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
+        for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
+            let rest =
+                topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
+            let anchor = self.position.get(neighbor as usize);
+            to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
         }
+        self.previous_position.set(i, from);
+        self.position.set(i, to);
+
         // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
         for pulled in &self.pulled {
             let i = pulled.particle as usize;
@@ -215,9 +218,9 @@ impl ClothParticles {
                 continue;
             }
             let rate = 1.0 - (1.0 - pulled.weight).max(0.0).powf(60.0 * seconds);
-            let (from, to) = (self.previous_position.get(i), self.position.get(i));
-            let slowed = from + (to - from) * (1.0 - rate);
-            self.position.set(i, slowed.lerp(pulled.target, rate));
+            let (from, free) = (self.previous_position.get(i), self.position.get(i));
+            let slowed = from.lerp(free, 1.0 - rate);
+            self.position.set(i, slowed.lerp(to + pulled.offset, rate));
         }
     }
 }

@@ -10,7 +10,8 @@ use bevy_math::{Vec2, Vec3};
 pub(super) struct Tangents {
     /// Vertices and weights of e₁ and e₂ for each triangle that has a UV area.
     triangles: Vec<([u32; 3], [f32; 2])>,
-    /// 1 where v grows along normal × tangent, −1 where it grows the other way; for each vertex.
+    /// w of each vertex: w · (normal × tangent) points up in the picture, where v falls, as glTF and Bevy's own tangents
+    /// have it.
     handedness: Vec<f32>,
     sums: Vec<Vec3>,
 }
@@ -30,9 +31,8 @@ impl Tangents {
                 continue;
             }
             triangles.push((corners, [(c - a).y / area, -(b - a).y / area]));
-            // Bevy's v grows downwards in the picture, and its bitangent is w · (normal × tangent).
             for i in corners {
-                handedness[i as usize] = area.signum();
+                handedness[i as usize] = -area.signum();
             }
         }
         Self {

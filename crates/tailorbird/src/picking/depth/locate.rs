@@ -49,13 +49,10 @@ pub(super) fn nearest(
         .iter()
         .filter(|cloth| {
             cloth.pickable.is_none_or(|pickable| pickable.is_hoverable)
-                && cloth.visibility.is_none_or(ViewVisibility::get)
+                && cloth.visibility.is_none_or(|visibility| visibility.get())
                 && camera_layers.intersects(cloth.layers.unwrap_or(&default_layers))
         })
-        .filter_map(|cloth| {
-            let (located, distance) = cloth.locate(point, seconds)?;
-            Some((located, distance))
-        })
+        .filter_map(|cloth| cloth.locate(point, seconds))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(located, _)| located)
 }

@@ -18,7 +18,6 @@ use bevy_app::{App, Plugin, PreUpdate};
 use bevy_camera::{Camera, Camera3d, visibility::RenderLayers};
 use bevy_core_pipeline::prepass::DepthPrepass;
 use bevy_ecs::prelude::*;
-use bevy_log::warn_once;
 use bevy_picking::{
     PickingSystems,
     backend::{
@@ -28,6 +27,7 @@ use bevy_picking::{
 };
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::prelude::*;
+use tracing::warn;
 
 use self::{
     locate::{Cloths, Located},
@@ -64,6 +64,8 @@ struct Latest {
     first: u64,
     /// When the question was asked, and the cloth that was found.
     answers: HashMap<RayId, (u64, Option<Located>)>,
+    /// Whether a camera without a prepass was reported.
+    reported: bool,
 }
 
 /// Takes what was answered, sends a hit for each pointer that is on a cloth, and asks for this frame.
@@ -115,8 +117,8 @@ fn update_hits(
             continue;
         };
         if !prepass {
-            if is_3d {
-                warn_once!(
+            if is_3d && !std::mem::replace(&mut latest.reported, true) {
+                warn!(
                     "ClothPickingBackend::Depth finds nothing through camera {}: add a DepthPrepass to it.",
                     id.camera
                 );

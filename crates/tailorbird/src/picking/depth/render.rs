@@ -14,7 +14,6 @@ use bevy_core_pipeline::{
     schedule::{Core3d, Core3dSystems},
 };
 use bevy_ecs::prelude::*;
-use bevy_log::warn_once;
 use bevy_math::UVec2;
 use bevy_render::{
     ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems,
@@ -29,6 +28,7 @@ use bevy_render::{
     sync_world::MainEntity,
     view::ExtractedView,
 };
+use tracing::warn;
 
 use super::{
     mailbox::{Answer, Mailbox, Question},
@@ -185,12 +185,15 @@ fn read_depth(
     cache: Res<PipelineCache>,
     queue: Res<RenderQueue>,
     mut context: RenderContext,
+    mut reported: Local<bool>,
 ) {
     let Some(mut reader) = reader else {
-        warn_once!(
-            "ClothPickingBackend::Depth finds nothing: this device has no compute shaders, or cannot read depth \
-             textures. Use ClothPickingBackend::Ray."
-        );
+        if !std::mem::replace(&mut *reported, true) {
+            warn!(
+                "ClothPickingBackend::Depth finds nothing: this device has no compute shaders, or cannot read depth \
+                 textures. Use ClothPickingBackend::Ray."
+            );
+        }
         return;
     };
     let (camera, extracted, textures, jitter, resolution) = view.into_inner();
