@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! Headless system tests.
+#![cfg(test)]
+
+mod drag;
+mod game;
+mod mesh;
+mod sphere_keys;
