@@ -15,7 +15,7 @@ pub struct Args {
     pub scene: Scene,
 
     /// Particles along each side.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = size, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = size, allow_hyphen_values = true)]
     pub size: u32,
 
     /// What is pinned: the corners (0, 0) and (0, N−1), or row 0 [default: what the scene has].
@@ -27,22 +27,22 @@ pub struct Args {
         long,
         value_name = "S",
         default_value_t = 300,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub steps: u32,
 
     /// Steps in a second [1/s].
-    #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_hyphen_values = true)]
     pub hz: f64,
 
     /// Substeps in a step.
     #[arg(long, value_name = "n", default_value_t = ClothSettings::default().substeps,
-          value_parser = substeps, allow_negative_numbers = true)]
+          value_parser = substeps, allow_hyphen_values = true)]
     pub substeps: u32,
 
     /// Passes over the constraints in a substep.
     #[arg(long, value_name = "k", default_value_t = ClothSettings::default().iterations,
-          value_parser = iterations, allow_negative_numbers = true)]
+          value_parser = iterations, allow_hyphen_values = true)]
     pub iterations: u32,
 
     /// How the constraints are solved.
@@ -50,12 +50,12 @@ pub struct Args {
     pub solver: Solver,
 
     /// Acceleration downwards [m/s²].
-    #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = finite, allow_hyphen_values = true)]
     pub gravity: f32,
 
     /// Rate at which motion decays [1/s].
     #[arg(long, value_name = "D", default_value_t = ClothMaterial::default().damping,
-          value_parser = not_negative, allow_negative_numbers = true)]
+          value_parser = not_negative, allow_hyphen_values = true)]
     pub damping: f32,
 
     /// Velocity of the air [m/s]; 0,0,0 is no air at all [default: 8,0,2 in the scene flag, else 0,0,0].
@@ -67,16 +67,16 @@ pub struct Args {
     pub sphere: Option<Sphere>,
 
     /// Compliance of all springs [m/N].
-    #[arg(long, value_name = "A", default_value_t = 0.0, value_parser = not_negative, allow_negative_numbers = true)]
+    #[arg(long, value_name = "A", default_value_t = 0.0, value_parser = not_negative, allow_hyphen_values = true)]
     pub compliance: f32,
 
     /// Mass per area [kg/m²].
     #[arg(long, value_name = "R", default_value_t = ClothMaterial::default().areal_density,
-          value_parser = positive, allow_negative_numbers = true)]
+          value_parser = positive, allow_hyphen_values = true)]
     pub density: f32,
 
     /// Threads of the compute pool [default: one for each core].
-    #[arg(long, value_name = "T", value_parser = threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<u32>,
 
     /// Other than 0: nudges each particle up or down during the first step, by up to 0.1 mm, differently for each seed.
@@ -84,7 +84,7 @@ pub struct Args {
         long,
         value_name = "I",
         default_value_t = 0,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub seed: u64,
 
@@ -97,7 +97,7 @@ pub struct Args {
     pub dump: Option<PathBuf>,
 
     /// Writes the start and every K-th step to the dump as well.
-    #[arg(long, value_name = "K", requires = "dump", value_parser = every, allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", requires = "dump", value_parser = every, allow_hyphen_values = true)]
     pub dump_every: Option<u32>,
 }
 
@@ -201,7 +201,7 @@ fn whole(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
 }
 
 fn finite(text: &str) -> Result<f32, String> {
-    number(text, f32::is_finite, "finite")
+    number(text, f32::is_finite, "a finite number")
 }
 
 fn positive(text: &str) -> Result<f32, String> {
@@ -236,7 +236,7 @@ fn number<T: FromStr + Copy>(
 ) -> Result<T, String> {
     match text.parse() {
         Ok(value) if ok(value) => Ok(value),
-        _ => Err(format!("must be a number {allowed}")),
+        _ => Err(format!("must be {allowed}")),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use crate::scene::Sheet;
+use super::scene::Sheet;
 
 /// The header.
 const COLUMNS: &str = "step,row,column,x,y,z";

@@ -13,6 +13,7 @@ mod report;
 mod scene;
 
 use std::{
+    ffi::OsString,
     fs::File,
     io::{self, BufWriter, Write as _},
     process::ExitCode,
@@ -26,24 +27,32 @@ use cli::Args;
 use dump::Dump;
 use scene::Sheet;
 
+#[cfg_attr(
+    test,
+    expect(dead_code, reason = "tests/headless.rs calls what it calls")
+)]
 fn main() -> ExitCode {
-    let args = Args::parse();
+    ExitCode::from(headless(std::env::args_os()))
+}
+
+/// The whole program: its arguments, its name first, to its exit code. Ends the process where they are wrong.
+pub fn headless(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let args = Args::parse_from(arguments);
     // Before the first step, so that a path that cannot be written costs no time.
     let dump = args.dump.as_ref().map(|path| match File::create(path) {
         Ok(file) => Dump::new(BufWriter::new(file), args.dump_every, args.steps),
         Err(error) => {
-            let message = format!(
-                "invalid value '{}' for '--dump <FILE>': {error}\n",
-                path.display()
-            );
-            Args::command().error(ErrorKind::Io, message).exit()
+            let path = path.display();
+            let message = format!("invalid value '{path}' for '--dump <FILE>': {error}");
+            let kind = ErrorKind::ValueValidation;
+            Args::command().error(kind, message).exit()
         }
     });
     match run(&args, dump) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::FAILURE
+            1
         }
     }
 }

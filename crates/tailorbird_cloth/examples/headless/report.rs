@@ -8,7 +8,7 @@ use std::{
 use serde::Serialize;
 use tailorbird_cloth::prelude::*;
 
-use crate::{cli::Args, scene::Sheet};
+use super::{cli::Args, scene::Sheet};
 
 /// What is printed; the names are those of the JSON.
 #[derive(Serialize, Clone, Debug)]

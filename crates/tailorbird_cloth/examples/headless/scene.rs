@@ -9,7 +9,7 @@ use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
 
-use crate::cli::{Args, Pins};
+use super::cli::{Args, Pins};
 
 /// Width and height of the sheet [m].
 const SIZE: f32 = 2.0;
