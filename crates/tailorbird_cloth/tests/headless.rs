@@ -1,5 +1,7 @@
 //! The command line of the example `headless`: what it prints and writes, and how it refuses.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests")]
+
 use std::{
     collections::BTreeMap,
     env, fs,
