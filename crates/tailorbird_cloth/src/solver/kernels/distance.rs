@@ -6,6 +6,8 @@
 //! The constraints of a pass must share no particle; so their order does not matter, and the bits do not depend on whether
 //! they are solved one by one or several at once.
 
+#![expect(clippy::doc_markdown, reason = "formulas")]
+
 use crate::points::Points;
 
 /// A distance below this [m] has no direction; the shorter, the less the constraint moves its ends.
