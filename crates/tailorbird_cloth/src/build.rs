@@ -44,7 +44,7 @@ pub fn build_topology(
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, None);
             }
             Err(error) => {
-                ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, [error])
+                ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, [error]);
             }
         }
     }

@@ -176,10 +176,12 @@ pub fn advance_frames(
         let ClothParticles {
             position,
             previous_position,
+            lost_displacement,
             inv_mass,
             ..
         } = &mut *particles;
         rigid::transform_free(rotation, shift, inv_mass, position);
         rigid::transform_all(rotation, shift, previous_position);
+        rigid::transform_all(rotation, Vec3::ZERO, lost_displacement);
     });
 }

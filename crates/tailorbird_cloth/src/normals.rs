@@ -117,9 +117,11 @@ pub fn recompute_normals(
         previous.copy_from(current);
         match shading {
             ClothShading::Smooth => {
-                normals::smooth(&topology.triangles, &particles.position, current)
+                normals::smooth(&topology.triangles, &particles.position, current);
             }
-            ClothShading::Flat => normals::flat(&topology.triangles, &particles.position, current),
+            ClothShading::Flat => {
+                normals::flat(&topology.triangles, &particles.position, current);
+            }
         }
         if fresh {
             previous.copy_from(current);

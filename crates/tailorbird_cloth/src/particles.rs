@@ -19,6 +19,9 @@ pub struct ClothParticles {
     /// Position at the start of the substep [m]; with `position` and `substep_seconds` it gives the velocity.
     #[reflect(ignore)]
     pub(crate) previous_position: Points,
+    /// What rounding took from the displacement of the substep [m]; part of the velocity.
+    #[reflect(ignore)]
+    pub(crate) lost_displacement: Points,
     /// Position at the start of the step [m], to interpolate from, and to fall back to.
     #[reflect(ignore)]
     pub(crate) step_position: Points,
@@ -76,6 +79,7 @@ impl ClothParticles {
         Self {
             previous_position: position.clone(),
             step_position: position.clone(),
+            lost_displacement: Points::zeroed(len),
             acceleration: Points::zeroed(len),
             mass: vec![0.0; len],
             inv_mass: vec![0.0; len],
@@ -143,7 +147,8 @@ impl ClothParticles {
     /// When `i` is out of range.
     pub fn velocity(&self, i: usize) -> Vec3 {
         if self.substep_seconds > 0.0 {
-            (self.position.get(i) - self.previous_position.get(i)) / self.substep_seconds
+            let moved = self.position.get(i) - self.previous_position.get(i);
+            (moved + self.lost_displacement.get(i)) / self.substep_seconds
         } else {
             Vec3::ZERO
         }
@@ -201,6 +206,7 @@ impl ClothParticles {
     pub(crate) fn reset_to_step_start(&mut self) {
         self.position.copy_from(&self.step_position);
         self.previous_position.copy_from(&self.step_position);
+        self.lost_displacement.fill(Vec3::ZERO);
         self.acceleration.fill(Vec3::ZERO);
     }
 }

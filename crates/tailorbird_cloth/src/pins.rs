@@ -289,7 +289,7 @@ pub fn apply_pins(
             }
             match pin.selection.particles(&topology) {
                 Ok(selected) => {
-                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)))
+                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)));
                 }
                 Err(error) => errors.push(error),
             }

@@ -97,14 +97,14 @@ impl Wind {
     /// most upright.
     pub fn velocity_at(&self, seconds: f64) -> Vec3 {
         let Gusts { strength, period } = self.gusts;
-        if strength <= 0.0 || !(period > 0.0) || self.velocity == Vec3::ZERO {
+        if strength <= 0.0 || period.is_nan() || period <= 0.0 || self.velocity == Vec3::ZERO {
             return self.velocity;
         }
         let wave = |ratio: f64, phase: f64| {
             let cycles = seconds * ratio / f64::from(period) + phase;
             (cycles.fract() as f32 * TAU).sin()
         };
-        let speed = 0.5 * wave(1.0, 0.0) + 0.3 * wave(2.718, 0.3) + 0.2 * wave(5.141, 0.7);
+        let speed = 0.5 * wave(1.0, 0.0) + 0.3 * wave(2.713, 0.3) + 0.2 * wave(5.141, 0.7);
         let swing = 0.6 * wave(0.618, 0.1) + 0.4 * wave(1.902, 0.6);
         let aside = self.velocity.cross(Vec3::Y);
         let aside = if aside.length_squared() > 1e-6 * self.velocity.length_squared() {

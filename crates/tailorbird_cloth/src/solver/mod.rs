@@ -52,6 +52,7 @@ pub fn verlet_step(
         let ClothParticles {
             position,
             previous_position,
+            lost_displacement,
             acceleration,
             inv_mass,
             pins,
@@ -61,7 +62,13 @@ pub fn verlet_step(
         // particle that is released flies on.
         let left = step.substeps_left();
         let before: &[_] = pins;
-        verlet.step(position, previous_position, acceleration, inv_mass);
+        verlet.step(
+            position,
+            previous_position,
+            lost_displacement,
+            acceleration,
+            inv_mass,
+        );
         for pin in before {
             let i = pin.particle as usize;
             let from = position.get(i);

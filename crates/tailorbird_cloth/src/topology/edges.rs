@@ -78,7 +78,8 @@ fn triangles(indices: &[u32], topology: &mut Topology) {
         let area = 0.5 * (b - a).cross(c - a).length();
         let mut sorted = triangle;
         sorted.sort_unstable();
-        if sorted[0] == sorted[1] || sorted[1] == sorted[2] || !(area > DEGENERATE * longest) {
+        let flat = area.is_nan() || area <= DEGENERATE * longest;
+        if sorted[0] == sorted[1] || sorted[1] == sorted[2] || flat {
             count(&mut degenerate, number);
         } else if !seen.insert(sorted) {
             count(&mut duplicate, number);

@@ -15,6 +15,8 @@
 //! A particle gets the mean of the changes of its triangles, weighted by their share of its mass. By Jensen's inequality the
 //! kinetic energy relative to the air then falls or stays at any length of the step.
 
+#![expect(clippy::doc_markdown, reason = "formulas")]
+
 use bevy_math::Vec3;
 
 use crate::points::Points;

@@ -1,0 +1,266 @@
+//! The command line. Every value is checked here, so that a wrong one is named with its flag (exit code 2).
+
+use std::{ops::RangeInclusive, path::PathBuf, str::FromStr};
+
+use bevy_math::Vec3;
+use clap::{Parser, ValueEnum};
+use tailorbird_cloth::prelude::*;
+
+/// A cloth without a renderer: simulates a sheet of 2 m × 2 m, horizontal at y = 1 at the start, and prints figures.
+#[derive(Parser, Clone, Debug)]
+#[command(name = "headless", version)]
+pub struct Args {
+    /// What happens.
+    #[arg(long, value_enum, default_value_t = Scene::Hang)]
+    pub scene: Scene,
+
+    /// Particles along each side.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = size, allow_hyphen_values = true)]
+    pub size: u32,
+
+    /// What is pinned: the corners (0, 0) and (0, N−1), or row 0 [default: what the scene has].
+    #[arg(long, value_enum)]
+    pub pins: Option<Pins>,
+
+    /// How many steps to simulate.
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 300,
+        allow_hyphen_values = true
+    )]
+    pub steps: u32,
+
+    /// Steps in a second [1/s].
+    #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_hyphen_values = true)]
+    pub hz: f64,
+
+    /// Substeps in a step.
+    #[arg(long, value_name = "n", default_value_t = ClothSettings::default().substeps,
+          value_parser = substeps, allow_hyphen_values = true)]
+    pub substeps: u32,
+
+    /// Passes over the constraints in a substep.
+    #[arg(long, value_name = "k", default_value_t = ClothSettings::default().iterations,
+          value_parser = iterations, allow_hyphen_values = true)]
+    pub iterations: u32,
+
+    /// How the constraints are solved.
+    #[arg(long, value_enum, default_value_t = Solver::GaussSeidel)]
+    pub solver: Solver,
+
+    /// Acceleration downwards [m/s²].
+    #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = finite, allow_hyphen_values = true)]
+    pub gravity: f32,
+
+    /// Rate at which motion decays [1/s].
+    #[arg(long, value_name = "D", default_value_t = ClothMaterial::default().damping,
+          value_parser = not_negative, allow_hyphen_values = true)]
+    pub damping: f32,
+
+    /// Velocity of the air [m/s]; 0,0,0 is no air at all [default: 8,0,2 in the scene flag, else 0,0,0].
+    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
+    pub wind: Option<Vec3>,
+
+    /// Middle and radius of a sphere [m] [default: 0,0.45,0,0.5 in the scene drape, else none].
+    #[arg(long, value_name = "x,y,z,r", value_parser = sphere, allow_hyphen_values = true)]
+    pub sphere: Option<Sphere>,
+
+    /// Compliance of all springs [m/N].
+    #[arg(long, value_name = "A", default_value_t = 0.0, value_parser = not_negative, allow_hyphen_values = true)]
+    pub compliance: f32,
+
+    /// Mass per area [kg/m²].
+    #[arg(long, value_name = "R", default_value_t = ClothMaterial::default().areal_density,
+          value_parser = positive, allow_hyphen_values = true)]
+    pub density: f32,
+
+    /// Threads of the compute pool [default: one for each core].
+    #[arg(long, value_name = "T", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<u32>,
+
+    /// Other than 0: nudges each particle up or down during the first step, by up to 0.1 mm, differently for each seed.
+    #[arg(
+        long,
+        value_name = "I",
+        default_value_t = 0,
+        allow_hyphen_values = true
+    )]
+    pub seed: u64,
+
+    /// Prints JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
+
+    /// Writes where the particles are in the world after the last step: step,row,column,x,y,z [m].
+    #[arg(long, value_name = "FILE")]
+    pub dump: Option<PathBuf>,
+
+    /// Writes the start and every K-th step to the dump as well.
+    #[arg(long, value_name = "K", requires = "dump", value_parser = every, allow_hyphen_values = true)]
+    pub dump_every: Option<u32>,
+}
+
+/// What happens.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scene {
+    /// Swings down from two corners.
+    Hang,
+    /// Blows in the wind, held at one edge.
+    Flag,
+    /// Falls on a sphere.
+    Drape,
+    /// Falls.
+    Free,
+}
+
+/// Which particles are held.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pins {
+    /// (0, 0) and (0, N−1).
+    Corners,
+    /// Row 0.
+    Edge,
+    /// None.
+    None,
+}
+
+/// How the constraints are solved.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// One after the other, in batches that share no particle.
+    GaussSeidel,
+}
+
+/// A sphere in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its middle [m].
+    pub center: Vec3,
+    /// Its radius [m].
+    pub radius: f32,
+}
+
+impl Args {
+    /// The pins asked for, or those of the scene.
+    pub fn pins(&self) -> Pins {
+        self.pins.unwrap_or(match self.scene {
+            Scene::Hang => Pins::Corners,
+            Scene::Flag => Pins::Edge,
+            Scene::Drape | Scene::Free => Pins::None,
+        })
+    }
+
+    /// The wind asked for, or that of the scene [m/s].
+    pub fn wind(&self) -> Vec3 {
+        self.wind.unwrap_or(match self.scene {
+            Scene::Flag => Vec3::new(8.0, 0.0, 2.0),
+            Scene::Hang | Scene::Drape | Scene::Free => Vec3::ZERO,
+        })
+    }
+
+    /// The sphere asked for, or that of the scene.
+    pub fn sphere(&self) -> Option<Sphere> {
+        self.sphere.or(match self.scene {
+            Scene::Drape => Some(Sphere {
+                center: Vec3::new(0.0, 0.45, 0.0),
+                radius: 0.5,
+            }),
+            Scene::Hang | Scene::Flag | Scene::Free => None,
+        })
+    }
+}
+
+fn size(text: &str) -> Result<u32, String> {
+    whole(text, 2..=4096)
+}
+
+fn substeps(text: &str) -> Result<u32, String> {
+    whole(text, 1..=ClothSettings::MOST_PASSES)
+}
+
+fn iterations(text: &str) -> Result<u32, String> {
+    whole(text, 0..=ClothSettings::MOST_PASSES)
+}
+
+fn threads(text: &str) -> Result<u32, String> {
+    whole(text, 1..=1024)
+}
+
+fn every(text: &str) -> Result<u32, String> {
+    whole(text, 1..=u32::MAX)
+}
+
+fn whole(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
+    let allowed = || {
+        let (first, last) = (range.start(), range.end());
+        format!("must be a whole number, {first} to {last}")
+    };
+    let value = text.parse().map_err(|_| allowed())?;
+    range.contains(&value).then_some(value).ok_or_else(allowed)
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    number(text, f32::is_finite, "a finite number")
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    number(
+        text,
+        |v: f32| v > 0.0 && v.is_finite(),
+        "above 0 and finite",
+    )
+}
+
+fn not_negative(text: &str) -> Result<f32, String> {
+    number(
+        text,
+        |v: f32| v >= 0.0 && v.is_finite(),
+        "at least 0 and finite",
+    )
+}
+
+fn hz(text: &str) -> Result<f64, String> {
+    // From steps of 100 s to steps of a microsecond.
+    number(
+        text,
+        |v: f64| (0.01..=1e6).contains(&v),
+        "above 0: 0.01 to 1000000",
+    )
+}
+
+fn number<T: FromStr + Copy>(
+    text: &str,
+    ok: impl Fn(T) -> bool,
+    allowed: &str,
+) -> Result<T, String> {
+    match text.parse() {
+        Ok(value) if ok(value) => Ok(value),
+        _ => Err(format!("must be {allowed}")),
+    }
+}
+
+fn vector(text: &str) -> Result<Vec3, String> {
+    let [x, y, z] = numbers(text)?;
+    Ok(Vec3::new(x, y, z))
+}
+
+fn sphere(text: &str) -> Result<Sphere, String> {
+    let [x, y, z, radius] = numbers(text)?;
+    if radius <= 0.0 {
+        return Err(format!("the radius {radius} must be above 0"));
+    }
+    Ok(Sphere {
+        center: Vec3::new(x, y, z),
+        radius,
+    })
+}
+
+fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
+    let values: Result<Vec<f32>, String> = text.split(',').map(|v| finite(v.trim())).collect();
+    let wrong = |_| format!("must be {N} finite numbers with commas between");
+    values
+        .map_err(|_| ())
+        .and_then(|values| values.try_into().map_err(|_| ()))
+        .map_err(wrong)
+}

@@ -1,0 +1,174 @@
+//! An app with one sheet.
+
+use std::{f32::consts::FRAC_PI_2, time::Duration};
+
+use bevy_app::{App, FixedPostUpdate, TaskPoolOptions, TaskPoolPlugin};
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, UVec2, Vec2, Vec3};
+use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
+use bevy_transform::components::Transform;
+use tailorbird_cloth::prelude::*;
+
+use super::cli::{Args, Pins};
+
+/// Width and height of the sheet [m].
+const SIZE: f32 = 2.0;
+
+/// How far a seed moves particles [m].
+const NUDGE: f32 = 1e-4;
+
+/// An app with one sheet.
+pub struct Sheet {
+    /// The app. Each update is one step.
+    pub app: App,
+    /// The sheet.
+    pub entity: Entity,
+}
+
+impl Sheet {
+    /// The sheet at its start: built, and no time has passed.
+    pub fn new(args: &Args) -> Self {
+        let mut app = App::new();
+        let mut pools = TaskPoolOptions::default();
+        if let Some(threads) = args.threads {
+            pools.compute.min_threads = threads as usize;
+            pools.compute.max_threads = threads as usize;
+        }
+        app.add_plugins((
+            TaskPoolPlugin {
+                task_pool_options: pools,
+            },
+            TimePlugin,
+            ClothPlugin::default(),
+        ));
+
+        // Updates as long as a step, so that there is one step in each.
+        let fixed = Time::<Fixed>::from_hz(args.hz);
+        let timestep = fixed.timestep();
+        app.insert_resource(fixed)
+            .insert_resource(TimeUpdateStrategy::ManualDuration(timestep));
+        let mut clock = app.world_mut().resource_mut::<Time<Virtual>>();
+        // Else the clock cuts off steps longer than a quarter of a second.
+        let most = clock.max_delta().max(timestep);
+        clock.set_max_delta(most);
+
+        app.insert_resource(ClothSettings {
+            gravity: Vec3::NEG_Y * args.gravity,
+            substeps: args.substeps,
+            iterations: args.iterations,
+            ..Default::default()
+        })
+        .insert_resource(match args.wind() {
+            Vec3::ZERO => Wind::vacuum(),
+            velocity => Wind::steady(velocity),
+        });
+        if let Some(sphere) = args.sphere() {
+            app.world_mut().spawn((
+                ClothCollider::sphere(sphere.radius),
+                Transform::from_translation(sphere.center),
+            ));
+        }
+        let entity = spawn_sheet(app.world_mut(), args);
+        app.finish();
+        app.cleanup();
+
+        // The clock stands still: this builds the sheet and does not move it, nor does the first update.
+        app.world_mut().run_schedule(FixedPostUpdate);
+        app.update();
+        let mut sheet = Self { app, entity };
+        if args.seed != 0 {
+            sheet.nudge(args, timestep);
+        }
+        sheet
+    }
+
+    /// Simulates a step; how long it took.
+    pub fn step(&mut self) -> Duration {
+        self.app.update();
+        self.app.world().resource::<ClothStepTime>().total
+    }
+
+    /// A component of the sheet.
+    ///
+    /// # Panics
+    /// When the sheet does not have it; [`Cloth`] brings all that are asked for.
+    #[expect(clippy::expect_used, reason = "Cloth requires them")]
+    pub fn get<C: Component>(&self) -> &C {
+        self.app.world().get(self.entity).expect("part of a cloth")
+    }
+
+    /// Particles in a row.
+    pub fn columns(&self) -> usize {
+        let resolution = self.get::<Cloth>().resolution();
+        resolution.map_or(1, |resolution| resolution.x as usize)
+    }
+
+    /// Where the particles are in the world [m].
+    pub fn world_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let frame = self.get::<ClothFrame>();
+        let particles = self.get::<ClothParticles>();
+        particles.positions().map(|p| frame.to_world(p))
+    }
+
+    /// What the simulation finds wrong with the sheet.
+    pub fn errors(&self) -> Vec<String> {
+        let status = self.get::<ClothStatus>();
+        status.errors().map(ToString::to_string).collect()
+    }
+
+    /// Pushes each particle up or down during the first step, by up to [`NUDGE`], without moving the sheet as a whole.
+    fn nudge(&mut self, args: &Args, timestep: Duration) {
+        let particles = self.get::<ClothParticles>();
+        let free = |i: &usize| !particles.is_pinned(*i);
+        let random = |i: usize| unit(args.seed ^ (i as u64).rotate_left(32));
+        let (mass, moment) = (0..particles.len())
+            .filter(free)
+            .map(|i| (particles.mass(i), particles.mass(i) * random(i)))
+            .fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+        let mean = moment / mass;
+        // An acceleration a moves by a h² (1 + 2 + … + n) in n substeps of length h.
+        let n = args.substeps as f32;
+        let h = timestep.as_secs_f32() / n;
+        let acceleration = NUDGE / (h * h * n * (n + 1.0) / 2.0);
+        let pushes: Vec<_> = (0..particles.len())
+            .filter(free)
+            .map(|i| (i as u32, Vec3::Y * ((random(i) - mean) * acceleration)))
+            .collect();
+        if let Some(mut forces) = self.app.world_mut().get_mut::<ClothForces>(self.entity) {
+            for (particle, push) in pushes {
+                forces.add_acceleration(particle, push);
+            }
+        }
+    }
+}
+
+/// The sheet: rows along +z from −1, columns along +x from −1, at y = 1.
+fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
+    let pins = match args.pins() {
+        Pins::Corners => ClothPins::corners(GridCorner::TOP),
+        Pins::Edge => ClothPins::edges([GridEdge::Top]),
+        Pins::None => ClothPins::default(),
+    };
+    let material = ClothMaterial {
+        areal_density: args.density,
+        stretch_compliance: args.compliance,
+        shear_compliance: args.compliance,
+        bend_compliance: args.compliance,
+        damping: args.damping,
+        ..Default::default()
+    };
+    // A grid stands upright, its rows along −y.
+    let transform =
+        Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
+    let cloth = Cloth::grid(Vec2::splat(SIZE), UVec2::splat(args.size)).centered();
+    world.spawn((cloth, material, pins, transform)).id()
+}
+
+/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
+fn unit(key: u64) -> f32 {
+    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
+}
