@@ -80,6 +80,15 @@ impl ClothFrame {
         self.start != self.end
     }
 
+    /// Takes over a scale that differs by more than the rounding of a scale that is read back from a rotated matrix.
+    fn set_scale(&mut self, scale: Vec3) {
+        const ROUNDING: f32 = 1e-5;
+        let most = ROUNDING * scale.abs().max_element();
+        if !self.placed || !scale.abs_diff_eq(self.scale, most) {
+            self.scale = scale;
+        }
+    }
+
     fn place(&mut self, to: Isometry3d) {
         self.start = self.end;
         self.end = to;
@@ -120,8 +129,8 @@ pub fn prepare_frames(
         };
         let error = match split(&transform) {
             Ok((isometry, scale)) => {
+                frame.set_scale(scale);
                 frame.place(isometry);
-                frame.scale = scale;
                 None
             }
             Err(error) => {
