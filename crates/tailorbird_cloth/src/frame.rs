@@ -161,7 +161,14 @@ pub fn advance_frames(
         Mut<ClothFrame>,
         Mut<ClothParticles>
     )| {
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            ..
+        } = &mut *particles;
         if !frame.is_moving() {
+            rigid::keep_frame(inv_mass, position, previous_position);
             return;
         }
         let to = if step.substeps_left() == 1 {
@@ -181,14 +188,6 @@ pub fn advance_frames(
         // The difference of the translations first: it is small even where they are large.
         let shift = inverse * Vec3::from(from.translation - to.translation);
         let rotation = Mat3::from_quat(inverse * from.rotation);
-
-        let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            ..
-        } = &mut *particles;
-        rigid::transform_free(rotation, shift, inv_mass, position);
-        rigid::transform_all(rotation, shift, previous_position);
+        rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
     });
 }

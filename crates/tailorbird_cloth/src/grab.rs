@@ -205,7 +205,6 @@ impl ClothParticles {
                 let anchor = self.position.get(neighbor as usize);
                 to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
             }
-            self.previous_position.set(i, from);
             self.position.set(i, to);
         }
         // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.

@@ -57,12 +57,9 @@ pub fn verlet_step(
             pins,
             ..
         } = &mut *particles;
-        // A pin moves with the frame: where it was in the world is already in `previous_position`, and kept, so that a
-        // particle that is released flies on.
         let left = step.substeps_left();
-        let before: &[_] = pins;
         verlet.step(position, previous_position, acceleration, inv_mass);
-        for pin in before {
+        for pin in pins.iter() {
             let i = pin.particle as usize;
             let from = position.get(i);
             position.set(i, from + (pin.target - from) / left as f32);

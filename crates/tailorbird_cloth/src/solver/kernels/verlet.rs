@@ -30,7 +30,7 @@ impl Verlet {
     }
 
     /// Moves free particles (`inv_mass` > 0) from `previous` over `position` to the new position, which replaces
-    /// `position`; the old one becomes `previous`. Kinematic ones stay, with `previous` at where they are.
+    /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
     /// `acceleration` comes in addition to gravity [m/s²].
     pub fn step(
@@ -71,8 +71,9 @@ impl Verlet {
             {
                 let now = *x;
                 let moved = now + (now - *x_before) * kept + (gravity + a) * h2;
-                *x = if *w > 0.0 { moved } else { now };
-                *x_before = now;
+                let free = *w > 0.0;
+                *x = if free { moved } else { now };
+                *x_before = if free { now } else { *x_before };
             }
         }
     }
