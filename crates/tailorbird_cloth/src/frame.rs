@@ -164,6 +164,7 @@ pub fn advance_frames(
         let ClothParticles {
             position,
             previous_position,
+            acceleration,
             inv_mass,
             ..
         } = &mut *particles;
@@ -189,5 +190,6 @@ pub fn advance_frames(
         let shift = inverse * Vec3::from(from.translation - to.translation);
         let rotation = Mat3::from_quat(inverse * from.rotation);
         rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
+        rigid::rotate(rotation, acceleration);
     });
 }

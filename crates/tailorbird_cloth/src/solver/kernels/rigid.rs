@@ -34,3 +34,10 @@ pub fn keep_frame(inv_mass: &[f32], position: &Points, previous: &mut Points) {
         }
     }
 }
+
+/// Turns vectors.
+pub fn rotate(rotation: Mat3, vectors: &mut Points) {
+    for i in 0..vectors.len() {
+        vectors.set(i, rotation * vectors.get(i));
+    }
+}
