@@ -65,6 +65,11 @@ impl ClothFrame {
         self.current.rotation.inverse() * (point - Vec3::from(self.current.translation))
     }
 
+    /// A point of the world in the frame at the end of the step [m].
+    pub(crate) fn to_frame_at_end(&self, point: Vec3) -> Vec3 {
+        self.end.rotation.inverse() * (point - Vec3::from(self.end.translation))
+    }
+
     /// A direction of the frame in world axes.
     pub fn vector_to_world(&self, vector: Vec3) -> Vec3 {
         self.current.rotation * vector

@@ -132,7 +132,8 @@ pub fn apply_grab(
                 let patch = hand
                     .patch
                     .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
-                let target = frame.to_frame(hand.target);
+                // Where the frame will be when the hand is reached.
+                let target = frame.to_frame_at_end(hand.target);
                 particles.pulled.clear();
                 particles
                     .pulled
