@@ -139,7 +139,7 @@ pub fn apply_grab(
                     .pulled
                     .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
                         particle,
-                        target: target + offset,
+                        offset,
                         weight,
                     }));
                 particles.grabbed =
@@ -195,19 +195,20 @@ impl ClothParticles {
     /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
     /// around it along. `left` substeps remain, this one included.
     pub(crate) fn move_grabbed(&mut self, topology: &ClothTopology, left: u32, seconds: f32) {
-        if let Some(held) = self.grabbed {
-            let i = held.particle as usize;
-            let from = self.position.get(i);
-            let mut to = from + (held.target - from) / left as f32;
-            // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
-            for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
-                let rest =
-                    topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
-                let anchor = self.position.get(neighbor as usize);
-                to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
-            }
-            self.position.set(i, to);
+        let Some(held) = self.grabbed else {
+            return;
+        };
+        let i = held.particle as usize;
+        let from = self.position.get(i);
+        let mut hand = from + (held.target - from) / left as f32;
+        // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
+        for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
+            let rest =
+                topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
+            let anchor = self.position.get(neighbor as usize);
+            hand = anchor + (hand - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
         }
+        self.position.set(i, hand);
         // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
         for pulled in &self.pulled {
             let i = pulled.particle as usize;
@@ -217,7 +218,8 @@ impl ClothParticles {
             let rate = 1.0 - (1.0 - pulled.weight).max(0.0).powf(60.0 * seconds);
             let (from, to) = (self.previous_position.get(i), self.position.get(i));
             let slowed = from + (to - from) * (1.0 - rate);
-            self.position.set(i, slowed.lerp(pulled.target, rate));
+            self.position
+                .set(i, slowed.lerp(hand + pulled.offset, rate));
         }
     }
 }

@@ -55,12 +55,12 @@ pub(crate) struct Held {
     pub target: Vec3,
 }
 
-/// A particle that is pulled to a place.
+/// A particle that is pulled along with the grabbed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pulled {
     pub particle: u32,
-    /// In the cloth's frame [m].
-    pub target: Vec3,
+    /// Where to, from the grabbed particle [m].
+    pub offset: Vec3,
     /// Part of the way to the target that is gone in a sixtieth of a second, 0 to 1.
     pub weight: f32,
 }
