@@ -88,7 +88,8 @@ pub fn solve_constraints(
                 ConstraintFamily::Shear => material.shear_compliance,
                 ConstraintFamily::Bend => material.bend_compliance,
             };
-            compliance.max(0.0) / (h * h)
+            // What is not finite would turn into NaN in the product with a multiplier of 0.
+            (compliance.max(0.0) / (h * h)).min(f32::MAX)
         };
         let constraints = &topology.constraints;
         let ClothParticles {
