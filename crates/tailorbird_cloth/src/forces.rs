@@ -31,6 +31,21 @@ struct Impulse {
     radius: f32,
 }
 
+impl Impulse {
+    fn error(&self) -> Option<ClothErrorKind> {
+        ClothErrorKind::vector("ClothForces.impulse", self.impulse)
+            .or_else(|| ClothErrorKind::vector("ClothForces.impulse point", self.point))
+            .or_else(|| {
+                ClothErrorKind::number(
+                    "ClothForces.impulse radius",
+                    self.radius,
+                    |r| r >= 0.0,
+                    "at least 0 [m]",
+                )
+            })
+    }
+}
+
 impl ClothForces {
     /// Pushes a particle with a force [N] for one step.
     pub fn add_force(&mut self, particle: u32, force: Vec3) {
@@ -118,16 +133,16 @@ pub fn apply_forces(
             }
         }
         for impulse in &forces.impulses {
-            if check("ClothForces.impulse", 0, impulse.impulse, len)
-                && check("ClothForces.impulse point", 0, impulse.point, len)
-            {
-                let local = Impulse {
-                    point: frame.to_frame(impulse.point),
-                    impulse: frame.vector_to_frame(impulse.impulse),
-                    radius: impulse.radius,
-                };
-                particles.add_impulse(local, step.seconds());
+            if let Some(error) = impulse.error() {
+                errors.push(error);
+                continue;
             }
+            let local = Impulse {
+                point: frame.to_frame(impulse.point),
+                impulse: frame.vector_to_frame(impulse.impulse),
+                radius: impulse.radius,
+            };
+            particles.add_impulse(local, step.seconds());
         }
         forces.bypass_change_detection().clear();
         ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, errors);

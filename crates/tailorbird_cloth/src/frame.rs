@@ -65,6 +65,11 @@ impl ClothFrame {
         self.current.rotation.inverse() * (point - Vec3::from(self.current.translation))
     }
 
+    /// A point of the world in the frame at the end of the step [m].
+    pub(crate) fn to_frame_at_end(&self, point: Vec3) -> Vec3 {
+        self.end.rotation.inverse() * (point - Vec3::from(self.end.translation))
+    }
+
     /// A direction of the frame in world axes.
     pub fn vector_to_world(&self, vector: Vec3) -> Vec3 {
         self.current.rotation * vector
@@ -78,6 +83,15 @@ impl ClothFrame {
     /// Whether the frame moves during this step.
     pub fn is_moving(&self) -> bool {
         self.start != self.end
+    }
+
+    /// Takes over a scale that differs by more than the rounding of a scale that is read back from a rotated matrix.
+    fn set_scale(&mut self, scale: Vec3) {
+        const ROUNDING: f32 = 1e-5;
+        let most = ROUNDING * scale.abs().max_element();
+        if !self.placed || !scale.abs_diff_eq(self.scale, most) {
+            self.scale = scale;
+        }
     }
 
     fn place(&mut self, to: Isometry3d) {
@@ -120,8 +134,8 @@ pub fn prepare_frames(
         };
         let error = match split(&transform) {
             Ok((isometry, scale)) => {
+                frame.set_scale(scale);
                 frame.place(isometry);
-                frame.scale = scale;
                 None
             }
             Err(error) => {
@@ -152,7 +166,16 @@ pub fn advance_frames(
         Mut<ClothFrame>,
         Mut<ClothParticles>
     )| {
+        let ClothParticles {
+            position,
+            previous_position,
+            lost_displacement,
+            acceleration,
+            inv_mass,
+            ..
+        } = &mut *particles;
         if !frame.is_moving() {
+            rigid::keep_frame(inv_mass, position, previous_position);
             return;
         }
         let to = if step.substeps_left() == 1 {
@@ -172,16 +195,8 @@ pub fn advance_frames(
         // The difference of the translations first: it is small even where they are large.
         let shift = inverse * Vec3::from(from.translation - to.translation);
         let rotation = Mat3::from_quat(inverse * from.rotation);
-
-        let ClothParticles {
-            position,
-            previous_position,
-            lost_displacement,
-            inv_mass,
-            ..
-        } = &mut *particles;
-        rigid::transform_free(rotation, shift, inv_mass, position);
-        rigid::transform_all(rotation, shift, previous_position);
-        rigid::transform_all(rotation, Vec3::ZERO, lost_displacement);
+        rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
+        rigid::rotate(rotation, lost_displacement);
+        rigid::rotate(rotation, acceleration);
     });
 }

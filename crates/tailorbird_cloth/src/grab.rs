@@ -137,7 +137,8 @@ pub fn apply_grab(
                 if !particles.is_pinned(hand.particle as usize) {
                     particles.grabbed = Some(Held {
                         particle: hand.particle,
-                        target: frame.to_frame(hand.target),
+                        // Where the frame will be when the hand is reached.
+                        target: frame.to_frame_at_end(hand.target),
                     });
                     particles
                         .pulled
@@ -200,17 +201,15 @@ impl ClothParticles {
         };
         let i = held.particle as usize;
         let from = self.position.get(i);
-        let mut to = from + (held.target - from) / left as f32;
+        let mut hand = from + (held.target - from) / left as f32;
         // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
         for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
             let rest =
                 topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
             let anchor = self.position.get(neighbor as usize);
-            to = anchor + (to - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
+            hand = anchor + (hand - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
         }
-        self.previous_position.set(i, from);
-        self.position.set(i, to);
-
+        self.position.set(i, hand);
         // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
         for pulled in &self.pulled {
             let i = pulled.particle as usize;
@@ -220,7 +219,8 @@ impl ClothParticles {
             let rate = 1.0 - (1.0 - pulled.weight).max(0.0).powf(60.0 * seconds);
             let (from, free) = (self.previous_position.get(i), self.position.get(i));
             let slowed = from.lerp(free, 1.0 - rate);
-            self.position.set(i, slowed.lerp(to + pulled.offset, rate));
+            self.position
+                .set(i, slowed.lerp(hand + pulled.offset, rate));
         }
     }
 }

@@ -299,6 +299,8 @@ pub fn apply_pins(
         let errors = material.errors();
         if errors.is_empty() {
             particles.set_masses(&topology.areas, material.areal_density);
+        } else {
+            particles.update_inv_masses();
         }
         ClothStatus::update(
             &mut status,

@@ -3,6 +3,7 @@
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{
     intern::Interned,
+    message::signal_message_update_system,
     prelude::*,
     schedule::{ScheduleLabel, SingleThreadedExecutor},
 };
@@ -84,7 +85,9 @@ impl Plugin for ClothPlugin {
                     .in_set(ClothSystems::Prepare),
                 run_substeps
                     .run_if(step_runs)
-                    .in_set(ClothSystems::Simulate),
+                    .in_set(ClothSystems::Simulate)
+                    // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
+                    .ambiguous_with(signal_message_update_system),
                 (
                     guard_finite.run_if(step_runs),
                     recompute_normals,

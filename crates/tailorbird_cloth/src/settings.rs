@@ -15,7 +15,8 @@ pub struct ClothSettings {
     /// Into how many substeps of equal length a step is divided, at least 1. More substeps make cloth stiffer and its
     /// motion finer, at proportional cost.
     pub substeps: u32,
-    /// How often the constraints are passed over in each substep.
+    /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
+    /// in few.
     pub iterations: u32,
     /// Stops the simulation. Cloths stay as they are.
     pub paused: bool,
@@ -27,8 +28,8 @@ impl Default for ClothSettings {
     fn default() -> Self {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
-            substeps: 8,
-            iterations: 2,
+            substeps: 16,
+            iterations: 1,
             paused: false,
             pending_steps: 0,
         }

@@ -3,6 +3,7 @@
 //! Two backends find what is under a pointer, and both say it the same way: bevy_picking's `PointerHits`, with a
 //! [`ClothPointerHit`] as the extra data of each hit. So `On<Pointer<…>>` observers work on a cloth as on any mesh.
 
+mod depth;
 mod ray;
 
 use bevy_app::{App, Plugin, PreUpdate};
@@ -62,6 +63,7 @@ impl Plugin for ClothPickingPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothPickingSettings>()
             .init_resource::<ClothPickingSettings>()
+            .add_plugins(depth::ClothDepthPickingPlugin)
             .add_systems(
                 PreUpdate,
                 ray::update_hits.in_set(PickingSystems::Backend).run_if(

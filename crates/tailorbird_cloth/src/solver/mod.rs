@@ -58,10 +58,7 @@ pub fn verlet_step(
             pins,
             ..
         } = &mut *particles;
-        // A pin moves with the frame: where it was in the world is already in `previous_position`, and kept, so that a
-        // particle that is released flies on.
         let left = step.substeps_left();
-        let before: &[_] = pins;
         verlet.step(
             position,
             previous_position,
@@ -69,7 +66,7 @@ pub fn verlet_step(
             acceleration,
             inv_mass,
         );
-        for pin in before {
+        for pin in pins.iter() {
             let i = pin.particle as usize;
             let from = position.get(i);
             position.set(i, from + (pin.target - from) / left as f32);
@@ -98,7 +95,8 @@ pub fn solve_constraints(
                 ConstraintFamily::Shear => material.shear_compliance,
                 ConstraintFamily::Bend => material.bend_compliance,
             };
-            compliance.max(0.0) / (h * h)
+            // What is not finite would turn into NaN in the product with a multiplier of 0.
+            (compliance.max(0.0) / (h * h)).min(f32::MAX)
         };
         let constraints = &topology.constraints;
         let ClothParticles {

@@ -78,17 +78,27 @@ impl ClothsItem<'_, '_> {
             .neighbors
             .of(start as u32)
             .iter()
-            .map(|&i| particles.position(i as usize).distance(particles.position(start)))
+            .map(|&i| {
+                particles
+                    .position(i as usize)
+                    .distance(particles.position(start))
+            })
             .fold(0.0, f32::max);
         let reach = (distance + 2.0 * edge).powi(2);
         let (triangle, barycentric, distance) = triangles
             .iter()
             .enumerate()
-            .filter(|(_, [first, ..])| particles.position(*first as usize).distance_squared(point) <= reach)
+            .filter(|(_, [first, ..])| {
+                particles.position(*first as usize).distance_squared(point) <= reach
+            })
             .map(|(triangle, corners)| {
                 let corners = corners.map(|i| particles.position(i as usize));
                 let barycentric = closest_on_triangle(point, corners);
-                (triangle, barycentric, weigh(barycentric, corners).distance(point))
+                (
+                    triangle,
+                    barycentric,
+                    weigh(barycentric, corners).distance(point),
+                )
             })
             .min_by(|a, b| a.2.total_cmp(&b.2))?;
 
@@ -112,12 +122,21 @@ impl ClothsItem<'_, '_> {
 
 impl Located {
     /// The hit, where the cloth is now. `None` when it is gone or was rebuilt.
-    pub fn pick(&self, camera: Entity, ray: Ray3d, cloths: &Query<Cloths, With<Cloth>>) -> Option<(Entity, HitData)> {
+    pub fn pick(
+        &self,
+        camera: Entity,
+        ray: Ray3d,
+        cloths: &Query<Cloths, With<Cloth>>,
+    ) -> Option<(Entity, HitData)> {
         let cloth = cloths.get(self.cloth).ok()?;
         if cloth.topology.revision != self.revision {
             return None;
         }
-        let indices = cloth.topology.triangles.get(self.triangle)?.map(|i| i as usize);
+        let indices = cloth
+            .topology
+            .triangles
+            .get(self.triangle)?
+            .map(|i| i as usize);
         if indices.iter().any(|&i| i >= cloth.particles.len()) {
             return None;
         }
@@ -128,7 +147,12 @@ impl Located {
             triangle: self.triangle,
             barycentric: self.barycentric,
             particle: indices.into_iter().min_by(|&i, &j| {
-                let distance = |i| cloth.particles.world_position(i, cloth.frame).distance_squared(position);
+                let distance = |i| {
+                    cloth
+                        .particles
+                        .world_position(i, cloth.frame)
+                        .distance_squared(position)
+                };
                 distance(i).total_cmp(&distance(j))
             })?,
         };

@@ -94,8 +94,16 @@ fn update_hits(
     }
 
     for answer in mailbox.take_answers() {
-        let Question { ray, frame, elapsed, .. } = answer.question;
-        let newer = latest.answers.get(&ray).is_none_or(|&(asked, _)| asked < frame);
+        let Question {
+            ray,
+            frame,
+            elapsed,
+            ..
+        } = answer.question;
+        let newer = latest
+            .answers
+            .get(&ray)
+            .is_none_or(|&(asked, _)| asked < frame);
         if frame < latest.first || !newer {
             continue;
         }
@@ -128,7 +136,11 @@ fn update_hits(
         if let Some((_, Some(located))) = latest.answers.get(&id)
             && let Some(pick) = located.pick(id.camera, ray, &cloths)
         {
-            hits.write(PointerHits::new(id.pointer, vec![pick], camera.order as f32));
+            hits.write(PointerHits::new(
+                id.pointer,
+                vec![pick],
+                camera.order as f32,
+            ));
         }
         // Through the ray instead of the pointer's place on the target, so that rays that a game adds work as well.
         if let Some(ndc) = camera.world_to_ndc(transform, ray.get_point(1.0)) {

@@ -2,8 +2,10 @@
 
 struct Probe {
     texel: vec2<u32>,
-    depth: f32,
-    unused: u32,
+    /// Of the sample that at least half of the samples are not behind.
+    median: f32,
+    /// Of all samples on average.
+    mean: f32,
 }
 
 #ifdef MULTISAMPLED
@@ -17,13 +19,26 @@ struct Probe {
 fn read_depth(@builtin(local_invocation_index) i: u32) {
     let texel = min(probes[i].texel, textureDimensions(depth_texture) - 1u);
 #ifdef MULTISAMPLED
-    // Reversed z: the nearest sample has the largest depth.
-    var depth = 0.0;
-    for (var sample = 0; sample < i32(textureNumSamples(depth_texture)); sample += 1) {
-        depth = max(depth, textureLoad(depth_texture, texel, sample));
+    let samples = i32(textureNumSamples(depth_texture));
+    var median = 0.0;
+    var sum = 0.0;
+    for (var sample = 0; sample < samples; sample += 1) {
+        let depth = textureLoad(depth_texture, texel, sample);
+        // Reversed z: what is nearer is larger.
+        var in_front = 0;
+        for (var other = 0; other < samples; other += 1) {
+            in_front += i32(textureLoad(depth_texture, texel, other) >= depth);
+        }
+        if 2 * in_front >= samples {
+            median = max(median, depth);
+        }
+        sum += depth;
     }
-    probes[i].depth = depth;
+    probes[i].median = median;
+    probes[i].mean = sum / f32(samples);
 #else
-    probes[i].depth = textureLoad(depth_texture, texel, 0);
+    let depth = textureLoad(depth_texture, texel, 0);
+    probes[i].median = depth;
+    probes[i].mean = depth;
 #endif
 }

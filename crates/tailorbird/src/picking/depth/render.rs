@@ -37,7 +37,7 @@ use super::{
 
 /// Texels read for one camera in one frame: one for each pointer over it. Known to the shader.
 const PROBES: usize = 16;
-/// Bytes of one probe: texel (two words), depth, padding.
+/// Bytes of one probe: texel (two words), median and mean depth of its samples.
 const PROBE_BYTES: usize = 16;
 /// Texels under way at most: cameras × frames until the answer, two or three. What is over is asked again next frame.
 const SLOTS: usize = 32;
@@ -226,10 +226,8 @@ fn read_depth(
     } else {
         &reader.single
     };
-    let (false, Some(compute)) = (
-        probes.is_empty(),
-        cache.get_compute_pipeline(pipeline.id),
-    ) else {
+    let (false, Some(compute)) = (probes.is_empty(), cache.get_compute_pipeline(pipeline.id))
+    else {
         return;
     };
     let device = context.render_device().clone();
@@ -303,10 +301,10 @@ impl Batch {
             .chunks_exact(PROBE_BYTES)
             .zip(&self.probes)
             .map(|(bytes, &(question, texel))| {
-                let depth = f32::from_ne_bytes([bytes[8], bytes[9], bytes[10], bytes[11]]);
+                let word = |i: usize| f32::from_ne_bytes([0, 1, 2, 3].map(|k| bytes[4 * i + k]));
                 Answer {
                     question,
-                    point: self.view.unproject(texel, depth),
+                    point: self.view.visible(texel, word(2), word(3)),
                 }
             })
             .collect()

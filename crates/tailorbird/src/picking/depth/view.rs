@@ -25,6 +25,9 @@ pub(super) struct VisiblePoint {
     pub texel_width: f32,
 }
 
+/// Samples of a texel whose mean is more than this many texel widths away from their median show different surfaces.
+const SAME_SURFACE: f32 = 4.0;
+
 impl View {
     /// The texel of the viewport under a point given in normalised device coordinates; points beyond the border count
     /// as on it. `None` in an empty viewport.
@@ -37,9 +40,22 @@ impl View {
         Some(at.as_uvec2().min(self.size - 1))
     }
 
+    /// What is visible in a texel of the viewport, from the median and the mean depth of its samples.
+    ///
+    /// Depth is linear on the screen, so where all samples show the same surface their mean is its depth in the middle of
+    /// the texel, while a single one is off by up to half a texel times the slope. At an outline the mean means nothing.
+    pub fn visible(&self, texel: UVec2, median: f32, mean: f32) -> Option<VisiblePoint> {
+        let median = self.unproject(texel, median)?;
+        self.unproject(texel, mean)
+            .filter(|mean| {
+                mean.position.distance(median.position) <= SAME_SURFACE * median.texel_width
+            })
+            .or(Some(median))
+    }
+
     /// What is visible in the middle of a texel of the viewport, from its depth: 1 at the near plane, 0 at the far
     /// one, which is also where nothing was drawn.
-    pub fn unproject(&self, texel: UVec2, depth: f32) -> Option<VisiblePoint> {
+    fn unproject(&self, texel: UVec2, depth: f32) -> Option<VisiblePoint> {
         if !(depth > 0.0 && depth <= 1.0) {
             return None;
         }
@@ -91,7 +107,11 @@ mod tests {
                 origin: UVec2::new(70, 30),
                 size: UVec2::new(400, 300),
             };
-            for point in [Vec3::ZERO, Vec3::new(0.4, -0.3, 1.0), Vec3::new(-0.7, 0.5, -0.2)] {
+            for point in [
+                Vec3::ZERO,
+                Vec3::new(0.4, -0.3, 1.0),
+                Vec3::new(-0.7, 0.5, -0.2),
+            ] {
                 let clip_from_world = clip_from_view * world_from_view.to_matrix().inverse();
                 let ndc = clip_from_world.project_point3(point);
                 let texel = view.texel(ndc.truncate()).expect("inside");
@@ -105,7 +125,14 @@ mod tests {
             assert_eq!(view.unproject(UVec2::ZERO, f32::NAN), None);
             assert_eq!(view.texel(Vec2::new(-1.0, 1.0)), Some(UVec2::ZERO));
             assert_eq!(view.texel(Vec2::new(9.0, -9.0)), Some(UVec2::new(399, 299)));
-            assert_eq!(View { size: UVec2::new(0, 9), ..view }.texel(Vec2::ZERO), None);
+            assert_eq!(
+                View {
+                    size: UVec2::new(0, 9),
+                    ..view
+                }
+                .texel(Vec2::ZERO),
+                None
+            );
         }
     }
 }

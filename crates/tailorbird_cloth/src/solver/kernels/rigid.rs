@@ -1,21 +1,43 @@
 //! Rigid motion: x' = R x + t.
+//!
+//! Kinematic particles (`inv_mass` 0) keep their coordinates in a frame that moves. Where they were in the world becomes
+//! their previous position, so that one that is released flies on with the velocity it was moved with.
 
 use bevy_math::{Mat3, Vec3};
 
 use crate::points::Points;
 
-/// Moves every point.
-pub fn transform_all(rotation: Mat3, shift: Vec3, points: &mut Points) {
-    for i in 0..points.len() {
-        points.set(i, rotation * points.get(i) + shift);
+/// Expresses particles in a frame that moved. `position` of free particles stays where it is in the world.
+pub fn change_frame(
+    rotation: Mat3,
+    shift: Vec3,
+    inv_mass: &[f32],
+    position: &mut Points,
+    previous: &mut Points,
+) {
+    for (i, w) in inv_mass.iter().enumerate() {
+        let place = rotation * position.get(i) + shift;
+        if *w > 0.0 {
+            previous.set(i, rotation * previous.get(i) + shift);
+            position.set(i, place);
+        } else {
+            previous.set(i, place);
+        }
     }
 }
 
-/// Moves the points of free particles (`inv_mass` > 0).
-pub fn transform_free(rotation: Mat3, shift: Vec3, inv_mass: &[f32], points: &mut Points) {
+/// The same for a frame that stands still.
+pub fn keep_frame(inv_mass: &[f32], position: &Points, previous: &mut Points) {
     for (i, w) in inv_mass.iter().enumerate() {
-        if *w > 0.0 {
-            points.set(i, rotation * points.get(i) + shift);
+        if *w == 0.0 {
+            previous.set(i, position.get(i));
         }
+    }
+}
+
+/// Turns vectors.
+pub fn rotate(rotation: Mat3, vectors: &mut Points) {
+    for i in 0..vectors.len() {
+        vectors.set(i, rotation * vectors.get(i));
     }
 }

@@ -5,6 +5,9 @@ use bevy_math::Vec3;
 use super::contact::Path;
 use crate::points::Points;
 
+/// How far inside a particle on the surface may seem to be, as a part of the radius squared.
+const ROUNDING: f32 = 1e-4;
+
 /// A sphere during one substep, in the frame of the particles.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingSphere {
@@ -34,10 +37,12 @@ impl MovingSphere {
         let start2 = path.from.length_squared();
         let approach = path.from.dot(travel);
         let inside = path.to.length_squared() < r2;
+        // A particle that was pushed out to the surface is a rounding inside of it: it counts as outside.
+        let from_outside = start2 >= r2 * (1.0 - ROUNDING);
         // The nearest point of the path's line to the centre lies ahead, not beyond the end, and inside.
         let through =
             approach < 0.0 && -approach < t2 && start2 * t2 - approach * approach < r2 * t2;
-        let normal = if start2 >= r2 && approach < 0.0 && (inside || through) {
+        let normal = if from_outside && approach < 0.0 && (inside || through) {
             let root = (approach * approach - t2 * (start2 - r2)).max(0.0).sqrt();
             let hit = path.from + travel * ((-approach - root) / t2).max(0.0);
             let normal = hit.normalize_or(Vec3::Y);
@@ -144,6 +149,18 @@ mod tests {
         };
         let end = sphere(0.5, 0.0).collide(path).expect("contact").to;
         assert!(end.z > 0.3 && end.length() < 0.75, "{end}");
+    }
+
+    #[test]
+    fn a_particle_on_the_surface_is_not_shot_through_whatever_rounding_did() {
+        for z in [1.0f32.next_down(), 1.0, 1.0f32.next_up()] {
+            let path = Path {
+                from: Vec3::Z * z,
+                to: Vec3::NEG_Z * 1.2,
+            };
+            let end = sphere(1.0, 0.0).collide(path).map(|path| path.to);
+            assert!(end.is_some_and(|end| end.z > 0.99), "{end:?}");
+        }
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl Verlet {
     }
 
     /// Moves free particles (`inv_mass` > 0) from `previous` over `position` to the new position, which replaces
-    /// `position`; the old one becomes `previous`. Kinematic ones stay, with `previous` at where they are.
+    /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
     /// `acceleration` comes in addition to gravity [m/s²]. `lost` is what rounding took from the displacement of each
     /// particle in the substep before [m], and is replaced by what it takes in this one.
@@ -81,10 +81,11 @@ impl Verlet {
             {
                 let now = *x;
                 let displacement = (now - *x_before + *lost) * kept + (gravity + a) * h2;
-                let displacement = if *w > 0.0 { displacement } else { 0.0 };
+                let free = *w > 0.0;
+                let displacement = if free { displacement } else { 0.0 };
                 *x = now + displacement;
                 *lost = displacement - (*x - now);
-                *x_before = now;
+                *x_before = if free { now } else { *x_before };
             }
         }
     }
