@@ -1,7 +1,34 @@
-//! Headless system tests.
+//! The tests of everything that needs no picture: one module per behaviour, each opening with its contract.
+//!
+//! They step time by hand ([`world`]) and assert what physics says. What rounding adds to it is bounded from the size
+//! of a unit in the last place, not from what the code printed once.
 #![cfg(test)]
 
+mod bad_input;
+mod catenary;
+mod determinism;
 mod drag;
+mod forces;
+mod frame_rate;
+mod free_fall;
+mod friction;
 mod game;
+mod grab;
+mod half_space;
+mod lifecycle;
 mod mesh;
+mod mesh_cloth;
+mod momentum;
+mod moving_frame;
+mod pendulum;
+mod pins;
+mod rebuild;
+mod resting_energy;
+mod scenes;
+mod schedule;
+mod settings;
+mod sphere;
 mod sphere_keys;
+mod symmetry;
+mod wind;
+mod world;

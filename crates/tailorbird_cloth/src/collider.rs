@@ -219,7 +219,7 @@ pub fn collide_sphere(
                 from: frame.to_frame(collider.center(from)),
                 to: frame.to_frame(collider.center(to)),
                 rotation: frame.vector_to_frame(turned.to_scaled_axis() / step.substeps() as f32),
-                radius: radius + material.thickness.max(0.0),
+                radius: radius + material.margin(),
                 friction: combined_friction(collider.friction, material.friction),
             };
             let ClothParticles {
@@ -258,7 +258,7 @@ pub fn collide_half_space(
                 from: frame.to_frame(collider.center(from)),
                 to: frame.to_frame(collider.center(to)),
                 normal: frame.vector_to_frame(rotation * Vec3::Y),
-                margin: material.thickness.max(0.0),
+                margin: material.margin(),
                 friction: combined_friction(collider.friction, material.friction),
             };
             let ClothParticles {

@@ -66,7 +66,7 @@ impl ClothFrame {
     }
 
     /// A point of the world in the frame at the end of the step [m].
-    pub(crate) fn to_frame_at_end(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn to_frame_at_end(self, point: Vec3) -> Vec3 {
         self.end.rotation.inverse() * (point - Vec3::from(self.end.translation))
     }
 

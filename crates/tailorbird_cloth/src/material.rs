@@ -141,6 +141,15 @@ impl ClothMaterial {
         ]
     }
 
+    /// The distance to keep from colliders [m]: none where the thickness is invalid.
+    pub(crate) fn margin(&self) -> f32 {
+        if self.thickness.is_finite() {
+            self.thickness.max(0.0)
+        } else {
+            0.0
+        }
+    }
+
     /// What is wrong with this material.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();

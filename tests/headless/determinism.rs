@@ -1,0 +1,84 @@
+//! Two runs give the same bits, and so do 1, 2 and 4 threads, on which several cloths are simulated at the same time.
+
+use std::process::Command;
+
+use bevy::{
+    prelude::*,
+    tasks::{ComputeTaskPool, TaskPoolBuilder},
+};
+use tailorbird::prelude::*;
+
+use crate::world::*;
+
+/// Tells the child process on how many threads to simulate.
+const THREADS: &str = "TAILORBIRD_TEST_THREADS";
+
+/// Eight cloths, more particles in all than are simulated on one thread.
+fn crowd() -> u64 {
+    let mut sim = Sim::new().with_passes(2, 2);
+    let mut wind = Wind::steady(Vec3::new(1.0, 0.0, 5.0));
+    wind.gusts.strength = 0.4;
+    sim.app.insert_resource(wind);
+    sim.spawn((
+        ClothCollider::sphere(0.4),
+        Transform::from_xyz(0.0, 0.0, 0.5),
+    ));
+    sim.spawn((
+        ClothCollider::half_space(),
+        Transform::from_xyz(0.0, -0.6, 0.0),
+    ));
+    let cloths: Vec<Entity> = (0..8)
+        .map(|k| {
+            let place = Transform::from_xyz(k as f32 * 0.2, 0.0, 0.0);
+            let pins = ClothPins::particles([k, 40]);
+            sim.spawn((square(46 + k), pins, place))
+        })
+        .collect();
+    sim.step(20);
+    assert!(sim.app.world().resource::<ClothStep>().parallel());
+    cloths
+        .into_iter()
+        .fold(0, |bits, cloth| bits.rotate_left(7) ^ sim.bits(cloth))
+}
+
+/// Run by the test below in processes of its own, since a process has one pool of threads.
+#[test]
+fn prints_the_bits_of_a_crowd() {
+    let Ok(threads) = std::env::var(THREADS) else {
+        return;
+    };
+    let threads: usize = threads.parse().unwrap();
+    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(threads).build());
+    let bits = crowd();
+    assert_eq!(ComputeTaskPool::get().thread_num(), threads);
+    println!("bits: {bits:016x}");
+}
+
+fn bits_on(threads: usize) -> String {
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args([
+            "determinism::prints_the_bits_of_a_crowd",
+            "--exact",
+            "--nocapture",
+        ])
+        .env(THREADS, threads.to_string())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}");
+    let at = text.find("bits: ").unwrap() + "bits: ".len();
+    text[at..at + 16].to_owned()
+}
+
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    let one = bits_on(1);
+    assert_eq!(bits_on(2), one);
+    assert_eq!(bits_on(4), one);
+    assert_eq!(bits_on(4), one);
+}
+
+#[test]
+fn two_runs_give_the_same_bits() {
+    assert_eq!(crowd(), crowd());
+}
