@@ -1,0 +1,8 @@
+#![cfg(test)]
+//! What needs a graphics driver: pictures, and picking by depth. A software driver does.
+//!
+//! Where there is none each test says so and is skipped; with `TAILORBIRD_REQUIRE_GPU` set it fails instead. The file
+//! named by `TAILORBIRD_SKIP_LOG` gets a line for each test that was skipped.
+
+mod depth_picking;
+mod offscreen;
