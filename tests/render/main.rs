@@ -4,5 +4,9 @@
 //! Where there is none each test says so and is skipped; with `TAILORBIRD_REQUIRE_GPU` set it fails instead. The file
 //! named by `TAILORBIRD_SKIP_LOG` gets a line for each test that was skipped.
 
+#[path = "../../examples/common/mod.rs"]
+mod common;
+
 mod depth_picking;
 mod offscreen;
+mod pictures;

@@ -67,8 +67,14 @@ fn has_adapter() -> bool {
 pub struct Offscreen {
     pub app: App,
     target: Handle<Image>,
-    /// Two renderers at a time in one process are slow, and not what is tested.
     _alone: MutexGuard<'static, ()>,
+}
+
+/// Waits until no other test renders: two renderers at a time in one process are slow, and not what is tested.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    // A test that failed must not fail the others.
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Offscreen {
@@ -85,13 +91,11 @@ impl Offscreen {
         size: UVec2,
         change: impl FnOnce(PluginGroupBuilder) -> PluginGroupBuilder,
     ) -> Option<Self> {
-        static ALONE: Mutex<()> = Mutex::new(());
         static LOG: Once = Once::new();
         if !graphics(test) {
             return None;
         }
-        // A test that failed must not fail the others.
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let alone = alone();
 
         let mut plugins = DefaultPlugins
             .set(RenderPlugin {

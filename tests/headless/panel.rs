@@ -1,0 +1,209 @@
+//! The demo's panel is a function over settings: what the player clicks changes what it says, and nothing else.
+
+use bevy_egui::egui::{self, Event, Pos2, RawInput, Rect, Shape, Vec2};
+use tailorbird::prelude::*;
+
+use crate::common::{
+    panel::{PanelState, panel},
+    scenes::SceneKind,
+    settings::DemoSettings,
+    status::Status,
+};
+
+const SCREEN: Vec2 = Vec2::new(340.0, 2400.0);
+
+struct Bench {
+    context: egui::Context,
+    settings: DemoSettings,
+    shapes: Vec<Shape>,
+    seconds: f64,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let mut bench = Self {
+            context: egui::Context::default(),
+            settings: DemoSettings::default(),
+            shapes: Vec::new(),
+            seconds: 0.0,
+        };
+        // Sections that are closed are opened: their headers are clicked as a player would.
+        for _ in 0..3 {
+            bench.pass(Vec::new());
+        }
+        for section in ["Ball and hand", "Look"] {
+            bench.click(section);
+        }
+        bench
+    }
+
+    fn pass(&mut self, events: Vec<Event>) {
+        // Long enough for the sections to unfold.
+        self.seconds += 0.5;
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SCREEN)),
+            time: Some(self.seconds),
+            events,
+            ..RawInput::default()
+        };
+        let settings = &mut self.settings;
+        let status = Status::default();
+        let mut output = self.context.run_ui(input, |ui| {
+            panel(
+                ui,
+                &mut PanelState {
+                    settings,
+                    status: &status,
+                },
+            );
+        });
+        output.textures_delta.clear();
+        self.shapes = output
+            .shapes
+            .into_iter()
+            .map(|clipped| clipped.shape)
+            .collect();
+    }
+
+    /// Where a text is shown.
+    fn find(&self, text: &str) -> Pos2 {
+        fn search(shape: &Shape, text: &str) -> Option<Pos2> {
+            match shape {
+                Shape::Text(shown) if shown.galley.text() == text => {
+                    Some(shown.pos + 0.5 * shown.galley.size())
+                }
+                Shape::Vec(shapes) => shapes.iter().find_map(|shape| search(shape, text)),
+                _ => None,
+            }
+        }
+        let place = self.shapes.iter().find_map(|shape| search(shape, text));
+        place.unwrap_or_else(|| panic!("{text:?} is not shown"))
+    }
+
+    fn press(&mut self, place: Pos2) {
+        let button = |pressed| Event::PointerButton {
+            pos: place,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::default(),
+        };
+        self.pass(vec![Event::PointerMoved(place)]);
+        self.pass(vec![button(true)]);
+        self.pass(vec![button(false)]);
+        for _ in 0..3 {
+            self.pass(Vec::new());
+        }
+    }
+
+    fn click(&mut self, text: &str) {
+        let place = self.find(text);
+        self.press(place);
+    }
+}
+
+#[test]
+fn looking_at_it_changes_nothing() {
+    let bench = Bench::new();
+    assert_eq!(bench.settings, DemoSettings::default());
+}
+
+#[test]
+fn buttons_do_what_they_say() {
+    let mut bench = Bench::new();
+    let resets = bench.settings.resets;
+    bench.click("Reset");
+    assert_eq!(bench.settings.resets, resets + 1);
+    bench.click("Pause");
+    assert!(bench.settings.paused);
+    bench.click("Single step");
+    assert_eq!(bench.settings.single_steps, 1);
+    bench.click("Go on");
+    assert!(!bench.settings.paused);
+}
+
+#[test]
+fn scenes_bring_their_own_material_and_wind() {
+    let mut bench = Bench::new();
+    for scene in SceneKind::ALL {
+        bench.click(scene.name());
+        assert_eq!(bench.settings.scene, scene);
+        assert_eq!(bench.settings.preset, scene.preset());
+        assert_eq!(bench.settings.wind, scene.wind());
+    }
+}
+
+#[test]
+fn choices_change_one_thing_each() {
+    let mut bench = Bench::new();
+    let mut expected = bench.settings.clone();
+    bench.click("flat");
+    expected.shading = ClothShading::Flat;
+    assert_eq!(bench.settings, expected);
+    bench.click("depth");
+    expected.picking = ClothPickingBackend::Depth;
+    assert_eq!(bench.settings, expected);
+    bench.click("classic");
+    expected.wind.model = WindModel::Classic;
+    assert_eq!(bench.settings, expected);
+    for (name, _) in expected.clone().look.toggles() {
+        bench.click(name);
+        let before = expected
+            .look
+            .toggles()
+            .into_iter()
+            .find(|(known, _)| *known == name)
+            .map(|(_, shown)| *shown)
+            .expect("a toggle");
+        expected.look.set(name, !before);
+        assert_eq!(bench.settings, expected, "{name}");
+    }
+}
+
+#[test]
+fn sliders_set_what_they_are_named_after() {
+    let mut bench = Bench::new();
+    // A slider lies left of its name, and its number between: a press on the rail sets it.
+    let rail = |bench: &Bench, name: &str| Pos2::new(40.0, bench.find(name).y);
+    for name in [
+        "gravity [m/s²]",
+        "gusts",
+        "substeps",
+        "resolution",
+        "friction",
+        "thickness [m]",
+        "damping [1/s]",
+        "radius [m]",
+        "speed [m/s]",
+    ] {
+        let before = bench.settings.clone();
+        let place = rail(&bench, name);
+        bench.press(place);
+        let after = bench.settings.clone();
+        let changed = [
+            ("gravity [m/s²]", before.gravity != after.gravity),
+            (
+                "gusts",
+                before.wind.gusts.strength != after.wind.gusts.strength,
+            ),
+            ("substeps", before.substeps != after.substeps),
+            ("resolution", before.resolution != after.resolution),
+            (
+                "friction",
+                before.material.friction != after.material.friction,
+            ),
+            (
+                "thickness [m]",
+                before.material.thickness != after.material.thickness,
+            ),
+            (
+                "damping [1/s]",
+                before.material.damping != after.material.damping,
+            ),
+            ("radius [m]", before.sphere_radius != after.sphere_radius),
+            ("speed [m/s]", before.sphere_speed != after.sphere_speed),
+        ];
+        for (known, changed) in changed {
+            assert_eq!(changed, known == name, "{name}: {known}");
+        }
+    }
+}
