@@ -141,36 +141,42 @@ fn the_wind_never_adds_energy_relative_to_the_air() {
 #[test]
 fn still_air_never_adds_energy() {
     for substeps in [1, 2, 4, 8, 16] {
-        let mut sim = in_wind(Wind::default(), substeps);
-        let cloth = sim.spawn((
-            square(8),
-            ClothMaterial {
-                damping: 0.0,
-                ..ClothMaterial::silk()
-            },
-        ));
-        sim.step(0);
-        sim.edit::<ClothForces>(cloth, |forces| {
-            for i in 0..64 {
-                forces.add_acceleration(i, Vec3::new(5.0, 0.0, 25.0) / DT);
-            }
-        });
-        sim.step(1);
-        // Bent and sheared springs hold energy and give it back, so from step to step it may rise; but never above what
-        // there was, and in the end the air has taken most of it.
-        let start = sim.particles(cloth).kinetic_energy();
-        for _ in 0..120 {
+        // As above: the air alone, then with springs that take up energy and give it back.
+        for iterations in [0, 2] {
+            let mut sim = in_wind(Wind::default(), substeps);
+            sim.settings().iterations = iterations;
+            let cloth = sim.spawn((
+                square(8),
+                ClothMaterial {
+                    damping: 0.0,
+                    ..ClothMaterial::silk()
+                },
+            ));
+            sim.step(0);
+            sim.edit::<ClothForces>(cloth, |forces| {
+                for i in 0..64 {
+                    forces.add_acceleration(i, Vec3::new(5.0, 0.0, 25.0) / DT);
+                }
+            });
             sim.step(1);
-            let now = sim.particles(cloth).kinetic_energy();
-            assert!(now <= start * 1.001, "{substeps}: {start} to {now}");
+            let start = sim.particles(cloth).kinetic_energy();
+            let mut before = start;
+            for step in 0..120 {
+                sim.step(1);
+                let now = sim.particles(cloth).kinetic_energy();
+                let most = if iterations == 0 { before } else { start };
+                assert!(
+                    now <= most + 1e-5 * start,
+                    "{substeps}, step {step}: {now} J of {most} J"
+                );
+                before = now;
+            }
         }
-        let end = sim.particles(cloth).kinetic_energy();
-        assert!(end < 0.2 * start, "{substeps}: {start} to {end}");
     }
 }
 
 #[test]
-fn a_free_cloth_never_gets_faster_than_the_wind() {
+fn a_free_cloth_gets_as_fast_as_the_wind_and_not_faster() {
     for substeps in [1, 2, 4, 8, 16] {
         for strength in [0.0, 0.5] {
             let mut wind = Wind::steady(Vec3::new(8.0, 2.0, 29.0));
@@ -192,9 +198,11 @@ fn a_free_cloth_never_gets_faster_than_the_wind() {
             println!(
                 "{substeps} substeps, gusts {strength}: mean {mean}, single {single} of {limit}"
             );
-            // Lift turns the flow: a sheet that tilts while it is blown along sails, and a sail may be a little faster than
-            // the wind. What holds exactly is the bound on the speed relative to the air, above.
-            assert!(mean <= limit * 1.005, "{substeps}: {mean}");
+            // Relative to the air it only gets slower (above). What speed it has left there a sheet at an angle turns into any
+            // direction, as a glider does, so that some hundredths are left beyond the wind's own.
+            assert!(mean <= limit * 1.05, "{substeps}: {mean}");
+            assert!(mean >= 0.8 * limit / (1.0 + strength), "{substeps}: {mean}");
+            assert!(single <= limit * 1.5, "{substeps}: {single}");
         }
     }
 }
