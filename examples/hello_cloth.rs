@@ -1,2 +1,45 @@
-//! x
-fn main() {}
+//! A curtain that hangs by its upper corners, and a ball that the arrow keys push into it. Drag the cloth with the mouse.
+
+use bevy::prelude::*;
+use tailorbird::prelude::*;
+
+fn main() {
+    App::new()
+        .add_plugins((DefaultPlugins, ClothPlugins::default()))
+        .add_systems(Startup, setup)
+        .run();
+}
+
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    // A curtain: 2 m wide, 1.5 m high.
+    commands.spawn((
+        Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
+        ClothMaterial::cotton(),
+        ClothPins::corners(GridCorner::TOP),
+        MeshMaterial3d(materials.add(Color::srgb(0.7, 0.1, 0.1))),
+        Transform::from_xyz(-1.0, 2.0, 0.0),
+    ));
+    // A ball: arrows, PageUp and PageDown move it.
+    commands.spawn((
+        ClothCollider::sphere(0.3),
+        SphereControls::default(),
+        Mesh3d(meshes.add(Sphere::new(0.3))),
+        MeshMaterial3d(materials.add(Color::srgb(0.8, 0.8, 0.8))),
+        Transform::from_xyz(0.0, 0.8, 0.7),
+    ));
+    commands.spawn((
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_xyz(-2.0, 4.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    commands.spawn((
+        Camera3d::default(),
+        Transform::from_xyz(1.2, 1.6, 4.0).looking_at(Vec3::Y, Vec3::Y),
+    ));
+}

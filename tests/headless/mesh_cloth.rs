@@ -13,12 +13,9 @@ fn sheet(n: usize, seam: bool) -> (Vec<Vec3>, Vec<u32>) {
         let last = (n - 1) as f32;
         Vec3::new(column as f32 / last - 0.5, 0.5 - row as f32 / last, 0.0)
     };
-    let halves = if seam {
-        vec![0..n / 2 + 1, n / 2..n]
-    } else {
-        vec![0..n]
-    };
-    for columns in halves {
+    let seam_at = if seam { n / 2 } else { n - 1 };
+    // Without a seam the second half has no cells.
+    for columns in [0..seam_at + 1, seam_at..n] {
         let (first, width) = (positions.len(), columns.len());
         for row in 0..n {
             positions.extend(columns.clone().map(|column| at(row, column)));

@@ -39,6 +39,7 @@ fn check(scene: SceneKind) {
         seconds: 2.0,
         every: 1.0,
         size: SIZE,
+        fine: false,
         settings: DemoSettings {
             resolution: 24,
             ..DemoSettings::of(scene)

@@ -1,6 +1,6 @@
 //! Lets pointers hit cloth.
 //!
-//! Two backends find what is under a pointer, and both say it the same way: bevy_picking's `PointerHits`, with a
+//! Two backends find what is under a pointer, and both say it the same way: `bevy_picking`'s `PointerHits`, with a
 //! [`ClothPointerHit`] as the extra data of each hit. So `On<Pointer<…>>` observers work on a cloth as on any mesh.
 
 mod depth;

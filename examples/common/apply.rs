@@ -1,0 +1,230 @@
+//! Carries [`DemoSettings`] over to the world: whoever changes them, panel, keys or script, takes the same way.
+
+use bevy::{
+    core_pipeline::prepass::DepthPrepass,
+    gizmos::config::GizmoConfigStore,
+    pbr::wireframe::{Wireframe, WireframeColor},
+    prelude::*,
+};
+use tailorbird::{prelude::*, sphere_controls::move_spheres};
+
+use super::{
+    camera::OrbitCamera,
+    fabric::Fabrics,
+    scenes::{SceneAssets, SceneCloth, SceneEntity, SceneSphere, spawn_scene},
+    settings::DemoSettings,
+    shortcuts::use_shortcuts,
+    stage::StagePlugin,
+};
+
+/// The demo without window and panel: stage, scenes, settings, keys. Add it after Bevy's plugins and `ClothPlugins`.
+#[derive(Default)]
+pub struct DemoPlugin {
+    /// What is shown at first.
+    pub settings: DemoSettings,
+    /// Where it is shown.
+    pub stage: StagePlugin,
+}
+
+/// The systems that carry settings over, in `Update`.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ApplySettings;
+
+impl Plugin for DemoPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(self.stage.clone())
+            .insert_resource(self.settings.clone())
+            .init_resource::<Fabrics>()
+            .add_systems(Update, use_shortcuts.before(ApplySettings))
+            .add_systems(
+                Update,
+                (
+                    show_scene,
+                    apply_cloth,
+                    apply_sphere,
+                    apply_solver,
+                    apply_fabric,
+                    apply_wireframe,
+                    apply_gizmos,
+                    apply_picking,
+                )
+                    .chain()
+                    .in_set(ApplySettings)
+                    .run_if(resource_changed::<DemoSettings>),
+            )
+            .add_systems(FixedUpdate, keep_above_ground.after(move_spheres));
+    }
+}
+
+/// Clears the old scene away and spawns the new one.
+fn show_scene(
+    mut commands: Commands,
+    settings: Res<DemoSettings>,
+    mut shown: Local<Option<(super::scenes::SceneKind, u32)>>,
+    old: Query<Entity, With<SceneEntity>>,
+    mut cameras: Query<&mut OrbitCamera>,
+    mut assets: SceneAssets,
+) {
+    let wanted = (settings.scene, settings.resets);
+    if *shown == Some(wanted) {
+        return;
+    }
+    for entity in &old {
+        commands.entity(entity).despawn();
+    }
+    spawn_scene(&mut commands, &settings, &mut assets);
+    if shown.is_none_or(|(scene, _)| scene != settings.scene) {
+        for mut camera in &mut cameras {
+            let covered = camera.covered;
+            *camera = OrbitCamera {
+                covered,
+                ..settings.scene.view()
+            };
+        }
+    }
+    *shown = Some(wanted);
+}
+
+fn apply_cloth(
+    settings: Res<DemoSettings>,
+    mut drag: ResMut<ClothDragSettings>,
+    mut cloths: Query<
+        (
+            &mut Cloth,
+            &mut ClothMaterial,
+            &mut ClothShading,
+            &mut ClothPins,
+        ),
+        With<SceneCloth>,
+    >,
+) {
+    drag.radius = settings.grab_radius;
+    for (mut cloth, mut material, mut shading, mut pins) in &mut cloths {
+        material.set_if_neq(settings.material);
+        shading.set_if_neq(settings.shading);
+        if cloth.set_if_neq(settings.scene.cloth(settings.resolution)) {
+            // They name particles of the grid as it was.
+            pins.release_user_pins();
+        }
+    }
+}
+
+fn apply_sphere(
+    settings: Res<DemoSettings>,
+    mut assets: SceneAssets,
+    mut spheres: Query<(&mut ClothCollider, &mut SphereControls, &mut Mesh3d), With<SceneSphere>>,
+) {
+    let radius = settings.sphere_radius;
+    for (mut collider, mut controls, mut mesh) in &mut spheres {
+        if collider.set_if_neq(ClothCollider::sphere(radius)) {
+            *mesh = assets.sphere(radius);
+        }
+        controls.set_if_neq(SphereControls {
+            speed: settings.sphere_speed,
+            fast_speed: 3.0 * settings.sphere_speed,
+            ..default()
+        });
+    }
+}
+
+fn apply_solver(
+    settings: Res<DemoSettings>,
+    mut solver: ResMut<ClothSettings>,
+    mut wind: ResMut<Wind>,
+    mut steps: Local<u32>,
+) {
+    wind.set_if_neq(settings.wind.clone());
+    let asked = settings.single_steps.wrapping_sub(*steps);
+    *steps = settings.single_steps;
+    let pending_steps = if settings.paused {
+        solver.pending_steps + asked
+    } else {
+        0
+    };
+    solver.set_if_neq(ClothSettings {
+        gravity: Vec3::new(0.0, -settings.gravity, 0.0),
+        substeps: settings.substeps,
+        iterations: settings.iterations,
+        paused: settings.paused,
+        pending_steps,
+    });
+}
+
+fn apply_fabric(
+    mut commands: Commands,
+    settings: Res<DemoSettings>,
+    mut shown: Local<Option<(&'static str, bool)>>,
+    mut assets: SceneAssets,
+    cloths: Query<Entity, With<SceneCloth>>,
+) {
+    let wanted = (settings.preset, settings.look.texture);
+    if *shown == Some(wanted) {
+        return;
+    }
+    *shown = Some(wanted);
+    for entity in &cloths {
+        commands.entity(entity).insert(assets.cloth(&settings));
+    }
+}
+
+/// Needs Bevy's `WireframePlugin`; does nothing without.
+fn apply_wireframe(
+    mut commands: Commands,
+    settings: Res<DemoSettings>,
+    cloths: Query<(Entity, Has<Wireframe>), With<SceneCloth>>,
+) {
+    for (entity, shown) in &cloths {
+        if settings.look.wireframe && !shown {
+            let color = WireframeColor {
+                color: Color::srgb(0.05, 0.06, 0.08),
+            };
+            commands.entity(entity).insert((Wireframe, color));
+        } else if !settings.look.wireframe && shown {
+            commands.entity(entity).remove::<Wireframe>();
+        }
+    }
+}
+
+fn apply_gizmos(settings: Res<DemoSettings>, mut store: ResMut<GizmoConfigStore>) {
+    let (config, gizmos) = store.config_mut::<ClothGizmos>();
+    // Nearer to the camera than the cloth that they lie in.
+    config.depth_bias = -0.02;
+    let look = settings.look;
+    *gizmos = ClothGizmos {
+        particles: look.particles,
+        stretch: look.stretch,
+        shear: look.shear,
+        bend: look.bend,
+        pins: look.pins,
+        normals: look.normals,
+        bounds: look.bounds,
+    };
+}
+
+fn apply_picking(
+    mut commands: Commands,
+    settings: Res<DemoSettings>,
+    mut picking: ResMut<ClothPickingSettings>,
+    cameras: Query<Entity, With<OrbitCamera>>,
+) {
+    picking.set_if_neq(ClothPickingSettings {
+        backend: settings.picking,
+    });
+    for camera in &cameras {
+        match settings.picking {
+            ClothPickingBackend::Ray => commands.entity(camera).remove::<DepthPrepass>(),
+            ClothPickingBackend::Depth => commands.entity(camera).insert(DepthPrepass),
+        };
+    }
+}
+
+/// The keys do not push the ball into the ground.
+fn keep_above_ground(mut spheres: Query<(&ClothCollider, &mut Transform), With<SceneSphere>>) {
+    for (collider, mut transform) in &mut spheres {
+        if let ColliderShape::Sphere { radius } = collider.shape
+            && transform.translation.y < radius
+        {
+            transform.translation.y = radius;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! A camera that goes round a point: the right mouse button turns, the middle one moves, the wheel comes closer. The
+//! left button is left to the cloth.
+
+use std::f32::consts::FRAC_PI_2;
+
+use bevy::{
+    input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit},
+    prelude::*,
+};
+use bevy_egui::input::EguiWantsInput;
+use tailorbird::prelude::*;
+
+/// Drives every [`OrbitCamera`].
+pub struct OrbitCameraPlugin;
+
+impl Plugin for OrbitCameraPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            RunFixedMainLoop,
+            (turn_by_mouse, place_cameras)
+                .chain()
+                .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+        );
+    }
+}
+
+/// Where a camera is, around the point that it looks at.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct OrbitCamera {
+    /// What it looks at [m].
+    pub focus: Vec3,
+    /// To the right, seen from above [rad].
+    pub yaw: f32,
+    /// Above the focus [rad].
+    pub pitch: f32,
+    /// From the focus [m].
+    pub distance: f32,
+    /// The part of the picture's width at the right that something covers [-]: the focus is in the middle of the rest.
+    pub covered: f32,
+}
+
+impl OrbitCamera {
+    /// How far up and down it goes [rad].
+    const STEEPEST: f32 = FRAC_PI_2 - 0.05;
+    /// Turn per pixel of the mouse's way [rad].
+    const TURN: f32 = 0.006;
+
+    /// Looks at `focus` [m] from `distance` [m]; yaw and pitch in degrees.
+    pub fn new(focus: Vec3, yaw: f32, pitch: f32, distance: f32) -> Self {
+        Self {
+            focus,
+            yaw: yaw.to_radians(),
+            pitch: pitch.to_radians(),
+            distance,
+            covered: 0.0,
+        }
+    }
+
+    /// Goes round [rad].
+    pub fn turn(&mut self, yaw: f32, pitch: f32) {
+        self.yaw += yaw;
+        // From below, the ground would hide everything.
+        self.pitch = (self.pitch + pitch).clamp(-0.1, Self::STEEPEST);
+    }
+
+    /// Comes closer by this number of notches of the wheel.
+    pub fn zoom(&mut self, notches: f32) {
+        self.distance = (self.distance * (-0.12 * notches).exp()).clamp(0.4, 15.0);
+    }
+
+    fn rotation(&self) -> Quat {
+        Quat::from_euler(EulerRot::YXZ, self.yaw, -self.pitch, 0.0)
+    }
+
+    /// Where the camera is, for the width [m] of what it sees at a distance of 1 m.
+    fn transform(&self, width: f32) -> Transform {
+        let rotation = self.rotation();
+        let aside = 0.5 * self.covered * width * self.distance;
+        let position = self.focus + rotation * Vec3::new(aside, 0.0, self.distance);
+        Transform::from_translation(position.with_y(position.y.max(0.05))).with_rotation(rotation)
+    }
+}
+
+/// Which way of moving the camera began, and lasts while its button is down.
+#[derive(Default)]
+enum Hold {
+    #[default]
+    None,
+    Turn,
+    Move,
+}
+
+fn turn_by_mouse(
+    buttons: Res<ButtonInput<MouseButton>>,
+    motion: Res<AccumulatedMouseMotion>,
+    scroll: Res<AccumulatedMouseScroll>,
+    panel: Option<Res<EguiWantsInput>>,
+    dragged: Query<(), With<ClothDrag>>,
+    mut hold: Local<Hold>,
+    mut cameras: Query<&mut OrbitCamera>,
+) {
+    let over_panel = panel.is_some_and(|panel| panel.wants_any_pointer_input());
+    if !over_panel && buttons.just_pressed(MouseButton::Right) {
+        *hold = Hold::Turn;
+    } else if !over_panel && buttons.just_pressed(MouseButton::Middle) {
+        *hold = Hold::Move;
+    } else if !buttons.any_pressed([MouseButton::Right, MouseButton::Middle]) {
+        *hold = Hold::None;
+    }
+    let notches = match scroll.unit {
+        MouseScrollUnit::Line => scroll.delta.y,
+        MouseScrollUnit::Pixel => scroll.delta.y / MouseScrollUnit::SCROLL_UNIT_CONVERSION_FACTOR,
+    };
+    let zooms = !over_panel && dragged.is_empty();
+    for mut camera in &mut cameras {
+        if zooms && notches != 0.0 {
+            camera.zoom(notches);
+        }
+        let way = motion.delta;
+        if way == Vec2::ZERO {
+            continue;
+        }
+        match *hold {
+            Hold::None => {}
+            Hold::Turn => {
+                let turn = -way * OrbitCamera::TURN;
+                camera.turn(turn.x, -turn.y);
+            }
+            Hold::Move => {
+                let step = Vec3::new(-way.x, way.y, 0.0) * 0.001 * camera.distance;
+                let step = camera.rotation() * step;
+                camera.focus += step;
+            }
+        }
+    }
+}
+
+/// Puts the cameras where they belong.
+pub fn place_cameras(
+    mut cameras: Query<(&OrbitCamera, &Projection, &mut Transform), Changed<OrbitCamera>>,
+) {
+    for (orbit, projection, mut transform) in &mut cameras {
+        let width = match projection {
+            Projection::Perspective(p) => 2.0 * (0.5 * p.fov).tan() * p.aspect_ratio,
+            _ => 0.0,
+        };
+        *transform = orbit.transform(width);
+    }
+}

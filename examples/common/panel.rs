@@ -1,0 +1,169 @@
+//! The panel: a plain function from settings to settings, without a world.
+
+use bevy::math::Vec3;
+use bevy_egui::egui;
+use egui::{ComboBox, DragValue, Slider, Ui};
+use tailorbird::prelude::*;
+
+use super::{
+    help::CONTROLS, plot::plots, scenes::SceneKind, settings::DemoSettings, status::Status,
+};
+
+/// What the panel shows and changes.
+pub struct PanelState<'a> {
+    /// Is changed.
+    pub settings: &'a mut DemoSettings,
+    /// Is shown.
+    pub status: &'a Status,
+}
+
+/// Shows the settings and changes them as the player wants.
+pub fn panel(ui: &mut Ui, state: &mut PanelState) {
+    ui.spacing_mut().slider_width = 130.0;
+    let status = state.status;
+    ui.label(format!(
+        "{:.0} frames/s · {:.0} particles · {:.0} constraints",
+        status.frame_rate, status.particles, status.constraints
+    ));
+    scene(ui, state.settings);
+    section(ui, "Air and gravity", true, |ui| air(ui, state.settings));
+    section(ui, "Solver", true, |ui| solver(ui, state.settings));
+    section(ui, "Material", true, |ui| material(ui, state.settings));
+    section(ui, "Ball and hand", false, |ui| {
+        ball_and_hand(ui, state.settings);
+    });
+    section(ui, "Look", false, |ui| look(ui, state.settings));
+    section(ui, "Figures", true, |ui| plots(ui, status));
+    section(ui, "Keys", false, keys);
+}
+
+fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    egui::CollapsingHeader::new(title)
+        .default_open(open)
+        .show(ui, add);
+}
+
+fn scene(ui: &mut Ui, settings: &mut DemoSettings) {
+    ui.horizontal(|ui| {
+        for scene in SceneKind::ALL {
+            let chosen = settings.scene == scene;
+            if ui.selectable_label(chosen, scene.name()).clicked() && !chosen {
+                settings.show(scene);
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Reset").clicked() {
+            settings.reset();
+        }
+        let pause = if settings.paused { "Go on" } else { "Pause" };
+        if ui.button(pause).clicked() {
+            settings.paused = !settings.paused;
+        }
+        if ui
+            .add_enabled(settings.paused, egui::Button::new("Single step"))
+            .clicked()
+        {
+            settings.single_steps = settings.single_steps.wrapping_add(1);
+        }
+    });
+}
+
+fn air(ui: &mut Ui, settings: &mut DemoSettings) {
+    ui.add(Slider::new(&mut settings.gravity, 0.0..=20.0).text("gravity [m/s²]"));
+    let wind = &mut settings.wind;
+    let Vec3 { x, y, z } = &mut wind.velocity;
+    ui.horizontal(|ui| {
+        for (name, value) in [("x ", x), ("y ", y), ("z ", z)] {
+            ui.add(
+                DragValue::new(value)
+                    .prefix(name)
+                    .speed(0.05)
+                    .range(-20.0..=20.0),
+            );
+        }
+        ui.label("wind [m/s]");
+    });
+    ui.add(Slider::new(&mut wind.gusts.strength, 0.0..=1.0).text("gusts"));
+    ui.add(Slider::new(&mut wind.gusts.period, 0.5..=10.0).text("between gusts [s]"));
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut wind.model, WindModel::Aerodynamic, "drag and lift");
+        ui.radio_value(&mut wind.model, WindModel::Classic, "classic");
+    });
+}
+
+fn solver(ui: &mut Ui, settings: &mut DemoSettings) {
+    ui.add(Slider::new(&mut settings.substeps, 1..=30).text("substeps"));
+    ui.add(Slider::new(&mut settings.iterations, 0..=30).text("iterations"));
+    ui.add(Slider::new(&mut settings.resolution, 4..=128).text("resolution"));
+}
+
+fn material(ui: &mut Ui, settings: &mut DemoSettings) {
+    let mut chosen = settings.preset;
+    ComboBox::from_label("preset")
+        .selected_text(chosen)
+        .show_ui(ui, |ui| {
+            for (name, _) in ClothMaterial::presets() {
+                ui.selectable_value(&mut chosen, name, name);
+            }
+        });
+    if chosen != settings.preset {
+        settings.choose_preset(chosen);
+    }
+    let material = &mut settings.material;
+    compliance(ui, &mut material.stretch_compliance, "stretch [m/N]");
+    compliance(ui, &mut material.shear_compliance, "shear [m/N]");
+    compliance(ui, &mut material.bend_compliance, "bend [m/N]");
+    ui.add(Slider::new(&mut material.damping, 0.0..=10.0).text("damping [1/s]"));
+    ui.add(Slider::new(&mut material.areal_density, 0.02..=2.0).text("density [kg/m²]"));
+    ui.add(Slider::new(&mut material.friction, 0.0..=2.0).text("friction"));
+    ui.add(Slider::new(&mut material.thickness, 0.0..=0.03).text("thickness [m]"));
+}
+
+/// 0 is rigid; above, orders of magnitude matter.
+fn compliance(ui: &mut Ui, value: &mut f32, text: &str) {
+    let slider = Slider::new(value, 0.0..=10.0)
+        .logarithmic(true)
+        .smallest_positive(1e-7)
+        .custom_formatter(|value, _| {
+            if value == 0.0 {
+                "0".into()
+            } else {
+                format!("{value:.0e}")
+            }
+        });
+    ui.add(slider.text(text));
+}
+
+fn ball_and_hand(ui: &mut Ui, settings: &mut DemoSettings) {
+    ui.add(Slider::new(&mut settings.sphere_radius, 0.05..=0.8).text("radius [m]"));
+    ui.add(Slider::new(&mut settings.sphere_speed, 0.1..=10.0).text("speed [m/s]"));
+    ui.add(Slider::new(&mut settings.grab_radius, 0.0..=0.3).text("hand [m]"));
+    ui.horizontal(|ui| {
+        ui.label("picking:");
+        ui.radio_value(&mut settings.picking, ClothPickingBackend::Ray, "ray");
+        ui.radio_value(&mut settings.picking, ClothPickingBackend::Depth, "depth");
+    });
+}
+
+fn look(ui: &mut Ui, settings: &mut DemoSettings) {
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut settings.shading, ClothShading::Smooth, "smooth");
+        ui.radio_value(&mut settings.shading, ClothShading::Flat, "flat");
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (name, value) in settings.look.toggles() {
+            ui.checkbox(value, name);
+        }
+    });
+}
+
+fn keys(ui: &mut Ui) {
+    egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+        for (control, action) in CONTROLS {
+            ui.label(egui::RichText::new(control).strong());
+            ui.label(action);
+            ui.end_row();
+        }
+    });
+}

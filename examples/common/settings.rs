@@ -1,0 +1,167 @@
+//! Everything that the panel, the keys and the scripts change, as plain data. [`apply`](super::apply) carries it over
+//! to the world.
+
+use bevy::prelude::*;
+use tailorbird::prelude::*;
+
+use super::scenes::SceneKind;
+
+/// Everything that a player can set.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct DemoSettings {
+    /// Which scene is shown.
+    pub scene: SceneKind,
+    /// How often the scene was started anew. A change starts it again.
+    pub resets: u32,
+    /// Particles along the longer side of the cloth.
+    pub resolution: u32,
+    /// The name of the preset that was chosen last.
+    pub preset: &'static str,
+    /// What the cloth is made of.
+    pub material: ClothMaterial,
+    /// How the cloth is shaded.
+    pub shading: ClothShading,
+    /// Acceleration of gravity, downwards [m/s²].
+    pub gravity: f32,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Iterations of a substep.
+    pub iterations: u32,
+    /// Whether time stands still.
+    pub paused: bool,
+    /// How often a single step was asked for. A change does as many steps.
+    pub single_steps: u32,
+    /// The air.
+    pub wind: Wind,
+    /// Radius of the ball [m].
+    pub sphere_radius: f32,
+    /// How fast the keys move the ball [m/s].
+    pub sphere_speed: f32,
+    /// How far from the grabbed particle cloth is pulled along [m].
+    pub grab_radius: f32,
+    /// What is drawn.
+    pub look: Look,
+    /// How the cloth under the pointer is found.
+    pub picking: ClothPickingBackend,
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The weave, or a plain colour.
+    pub texture: bool,
+    /// The triangles' edges.
+    pub wireframe: bool,
+    /// Particles as points.
+    pub particles: bool,
+    /// Stretch constraints as lines.
+    pub stretch: bool,
+    /// Shear constraints as lines.
+    pub shear: bool,
+    /// Bend constraints as lines.
+    pub bend: bool,
+    /// Pins as crosses.
+    pub pins: bool,
+    /// Normals as lines.
+    pub normals: bool,
+    /// The box around the cloth.
+    pub bounds: bool,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            texture: true,
+            wireframe: false,
+            particles: false,
+            stretch: false,
+            shear: false,
+            bend: false,
+            pins: false,
+            normals: false,
+            bounds: false,
+        }
+    }
+}
+
+impl Default for DemoSettings {
+    fn default() -> Self {
+        Self::of(SceneKind::Curtain)
+    }
+}
+
+impl DemoSettings {
+    /// The scene with its own material and wind.
+    pub fn of(scene: SceneKind) -> Self {
+        let solver = ClothSettings::default();
+        let mut settings = Self {
+            scene,
+            resets: 0,
+            resolution: 64,
+            preset: "",
+            material: ClothMaterial::default(),
+            shading: ClothShading::Smooth,
+            gravity: -solver.gravity.y,
+            substeps: solver.substeps,
+            iterations: solver.iterations,
+            paused: false,
+            single_steps: 0,
+            wind: Wind::default(),
+            sphere_radius: 0.0,
+            sphere_speed: 1.5,
+            grab_radius: 0.06,
+            look: Look::default(),
+            picking: ClothPickingBackend::Ray,
+        };
+        settings.show(scene);
+        settings
+    }
+
+    /// Shows a scene with its own material, wind and ball. What concerns the solver and the looks stays.
+    pub fn show(&mut self, scene: SceneKind) {
+        self.scene = scene;
+        self.resets += 1;
+        self.choose_preset(scene.preset());
+        self.wind = scene.wind();
+        self.sphere_radius = scene.sphere_radius();
+    }
+
+    /// Starts the scene anew, with the settings as they are.
+    pub fn reset(&mut self) {
+        self.resets += 1;
+    }
+
+    /// Takes over a preset; does nothing when there is none of this name.
+    pub fn choose_preset(&mut self, name: &str) {
+        let presets = ClothMaterial::presets();
+        if let Some((name, material)) = presets.into_iter().find(|(known, _)| *known == name) {
+            self.preset = name;
+            self.material = material;
+        }
+    }
+}
+
+impl Look {
+    /// All that can be shown, by name.
+    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 9] {
+        [
+            ("texture", &mut self.texture),
+            ("wireframe", &mut self.wireframe),
+            ("particles", &mut self.particles),
+            ("stretch", &mut self.stretch),
+            ("shear", &mut self.shear),
+            ("bend", &mut self.bend),
+            ("pins", &mut self.pins),
+            ("normals", &mut self.normals),
+            ("bounds", &mut self.bounds),
+        ]
+    }
+
+    /// Shows or hides something by name; logs when there is nothing of this name.
+    pub fn set(&mut self, name: &str, shown: bool) {
+        match self.toggles().into_iter().find(|(known, _)| *known == name) {
+            Some((_, value)) => *value = shown,
+            None => warn!("nothing to show or hide is named {name:?}"),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The keys of the demo. Those of the ball and of pinning belong to the plugin.
+
+use bevy::prelude::*;
+
+use super::{scenes::SceneKind, settings::DemoSettings};
+
+/// The keys that show a scene.
+const SCENES: [KeyCode; 4] = [
+    KeyCode::Digit1,
+    KeyCode::Digit2,
+    KeyCode::Digit3,
+    KeyCode::Digit4,
+];
+
+/// Does what the keys say.
+pub fn use_shortcuts(keys: Option<Res<ButtonInput<KeyCode>>>, mut settings: ResMut<DemoSettings>) {
+    let Some(keys) = keys else {
+        return;
+    };
+    if keys.just_pressed(KeyCode::KeyR) {
+        settings.reset();
+    }
+    if keys.just_pressed(KeyCode::Space) {
+        settings.paused = !settings.paused;
+    }
+    if keys.just_pressed(KeyCode::KeyN) {
+        settings.paused = true;
+        settings.single_steps = settings.single_steps.wrapping_add(1);
+    }
+    for (key, scene) in SCENES.into_iter().zip(SceneKind::ALL) {
+        if keys.just_pressed(key) {
+            settings.show(scene);
+        }
+    }
+}

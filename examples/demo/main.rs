@@ -1,0 +1,159 @@
+//! A curtain, a flag, a tablecloth and a sheet over a ball: drag them, pin them, blow at them.
+//!
+//! `cargo run --example demo` opens a window with a panel of sliders; `--help` lists the rest. Without a display it
+//! draws pictures to ./out instead.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use std::{fs, path::PathBuf, process::ExitCode};
+
+use bevy::prelude::*;
+use clap::Parser;
+use common::{
+    apply::DemoPlugin,
+    graphics::{check_driver, has_display},
+    help,
+    offscreen::{self, OffscreenOptions},
+    scenes::SceneKind,
+    script::{self, Script},
+    settings::DemoSettings,
+    window::{ExitAfterFrames, PanelPlugin},
+};
+use tailorbird::prelude::*;
+
+/// Real-time cloth: a curtain, a flag, a tablecloth and a sheet over a ball.
+#[derive(Parser)]
+#[command(after_help = after_help())]
+struct Arguments {
+    /// curtain, flag, tablecloth or ball
+    #[arg(long)]
+    scene: Option<SceneKind>,
+    /// Particles along the longer side of the cloth
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512), default_value_t = 64)]
+    resolution: u32,
+    /// Draws to PNG files in this folder instead of a window
+    #[arg(long, value_name = "DIR")]
+    offscreen: Option<PathBuf>,
+    /// With --offscreen: how much is played [s]
+    #[arg(long, value_parser = seconds, default_value = "7")]
+    seconds: f32,
+    /// With --offscreen: the time between two pictures [s]
+    #[arg(long, value_parser = seconds, default_value = "0.25")]
+    every: f32,
+    /// With --offscreen: what happens, instead of the scene's own script
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// With --offscreen: smooth edges, even without a graphics card, where they take three times as long
+    #[arg(long)]
+    fine: bool,
+    /// Width and height [pixels]
+    #[arg(long, value_parser = size, value_name = "WxH", default_value = "1280x720")]
+    size: UVec2,
+}
+
+fn after_help() -> String {
+    format!("In the window:\n{}\n{}", help::text(), script::FORMAT)
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(code) => code,
+        Err(message) => {
+            eprintln!("demo: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(mut arguments: Arguments) -> Result<ExitCode, String> {
+    check_driver()?;
+    if arguments.offscreen.is_none() && !has_display() {
+        eprintln!("demo: there is no display; drawing pictures to ./out instead");
+        arguments.offscreen = Some("out".into());
+    }
+    match arguments.offscreen.take() {
+        Some(dir) => draw(&arguments, dir),
+        None => Ok(play(&arguments)),
+    }
+}
+
+/// Opens the window.
+fn play(arguments: &Arguments) -> ExitCode {
+    let exit = App::new()
+        .add_plugins(DefaultPlugins.set(WindowPlugin {
+            primary_window: Some(Window {
+                title: "Tailorbird".into(),
+                resolution: (arguments.size.x, arguments.size.y).into(),
+                ..default()
+            }),
+            ..default()
+        }))
+        .add_plugins((
+            ClothPlugins::default(),
+            DemoPlugin {
+                settings: settings(arguments, arguments.scene.unwrap_or_default()),
+                ..default()
+            },
+            PanelPlugin,
+            ExitAfterFrames,
+        ))
+        .run();
+    match exit {
+        AppExit::Success => ExitCode::SUCCESS,
+        AppExit::Error(code) => ExitCode::from(code.get()),
+    }
+}
+
+/// Draws one scene, or all of them.
+fn draw(arguments: &Arguments, dir: PathBuf) -> Result<ExitCode, String> {
+    let script = match &arguments.script {
+        Some(path) => Some(read(path)?),
+        None => None,
+    };
+    let scenes = match arguments.scene {
+        Some(scene) => vec![scene],
+        None => SceneKind::ALL.into(),
+    };
+    for scene in scenes {
+        let pictures = offscreen::draw(&OffscreenOptions {
+            dir: dir.clone(),
+            seconds: arguments.seconds,
+            every: arguments.every,
+            size: arguments.size,
+            fine: arguments.fine,
+            settings: settings(arguments, scene),
+            script: script.clone().unwrap_or_else(|| Script::of(scene)),
+        });
+        let pictures = pictures.map_err(|error| error.to_string())?;
+        println!("{scene}: {} pictures in {}", pictures.len(), dir.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn settings(arguments: &Arguments, scene: SceneKind) -> DemoSettings {
+    DemoSettings {
+        resolution: arguments.resolution,
+        ..DemoSettings::of(scene)
+    }
+}
+
+fn read(path: &PathBuf) -> Result<Script, String> {
+    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    text.parse()
+        .map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn seconds(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value <= 3600.0 => Ok(value),
+        _ => Err("a time is above 0 and at most 3600 [s]".into()),
+    }
+}
+
+fn size(text: &str) -> Result<UVec2, String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (16..=8192).contains(side));
+    text.split_once('x')
+        .and_then(|(width, height)| Some(UVec2::new(side(width)?, side(height)?)))
+        .ok_or_else(|| "a size is two numbers from 16 to 8192, as 1280x720".into())
+}
