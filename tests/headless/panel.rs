@@ -163,7 +163,7 @@ fn choices_change_one_thing_each() {
 fn sliders_set_what_they_are_named_after() {
     let mut bench = Bench::new();
     // A slider lies left of its name, and its number between: a press on the rail sets it.
-    let rail = |bench: &Bench, name: &str| Pos2::new(40.0, bench.find(name).y);
+    let rail = |bench: &Bench, name: &str| Pos2::new(100.0, bench.find(name).y);
     for name in [
         "gravity [m/s²]",
         "gusts",
