@@ -34,13 +34,13 @@ pub struct ClothDragPlugin;
 pub struct ClothDragSettings {
     /// The button that drags.
     pub button: PointerButton,
-    /// How far around the held particle the cloth is taken along [m]; its direct neighbours always are.
+    /// How far around the held particle the cloth is taken along \[m\]; its direct neighbours always are.
     pub radius: f32,
     /// Pins what is held; while nothing is held, releases the pins that were made so.
     pub pin_key: KeyCode,
     /// Whether that releases the pins that the scene came with as well.
     pub release_scene_pins: bool,
-    /// How far a notch of the wheel moves what is held away from the camera [m].
+    /// How far a notch of the wheel moves what is held away from the camera \[m\].
     pub wheel_step: f32,
 }
 
@@ -64,9 +64,9 @@ pub struct ClothDrag {
     pub pointer: PointerId,
     /// Through which camera.
     pub camera: Entity,
-    /// Distance from the camera along its view direction [m].
+    /// Distance from the camera along its view direction \[m\].
     pub depth: f32,
-    /// From the point under the pointer to the held particle, in the world [m].
+    /// From the point under the pointer to the held particle, in the world \[m\].
     offset: Vec3,
 }
 
@@ -123,7 +123,7 @@ impl Plugin for ClothDragPlugin {
     }
 }
 
-/// How far a ray goes until it is `depth` [m] away from the camera along its view direction.
+/// How far a ray goes until it is `depth` \[m\] away from the camera along its view direction.
 fn at_depth(ray: &Ray3d, camera: &GlobalTransform, depth: f32) -> Option<Vec3> {
     let forward = *camera.forward();
     let along = ray.direction.dot(forward);

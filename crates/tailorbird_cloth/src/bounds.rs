@@ -15,9 +15,9 @@ use crate::{
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothBounds {
-    /// Lowest coordinates [m].
+    /// Lowest coordinates \[m\].
     pub min: Vec3,
-    /// Highest coordinates [m].
+    /// Highest coordinates \[m\].
     pub max: Vec3,
 }
 

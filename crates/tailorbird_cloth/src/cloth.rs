@@ -49,7 +49,7 @@ pub struct Cloth {
 pub enum ClothShape {
     /// A rectangle in the x-y plane that faces +z. Columns run along +x, rows along −y: row 0 is the top.
     Grid {
-        /// Width and height [m].
+        /// Width and height \[m\].
         size: Vec2,
         /// Columns and rows of particles, at least 2 × 2.
         resolution: UVec2,
@@ -59,21 +59,21 @@ pub enum ClothShape {
     },
     /// Triangles.
     Mesh {
-        /// Vertices [m].
+        /// Vertices \[m\].
         positions: Vec<Vec3>,
         /// Three for each triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
-        /// Vertices that are no further apart than this [m] become one particle, so that seams of UVs or normals
+        /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
         /// hold together.
         weld_distance: f32,
     },
 }
 
 impl Cloth {
-    /// The distance [m] at which the vertices of a mesh are welded, unless another is given.
+    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
     pub const WELD_DISTANCE: f32 = 1e-5;
 
-    /// A rectangle of `size` [m] with `resolution` columns and rows of particles, whose top left corner lies at the
+    /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner lies at the
     /// entity's origin. What is wrong with the values is reported when the cloth is built; [`Cloth::try_grid`] tells
     /// at once.
     pub fn grid(size: Vec2, resolution: UVec2) -> Self {
@@ -96,7 +96,7 @@ impl Cloth {
         Ok(cloth)
     }
 
-    /// Triangles, given as vertices [m] and three indices for each triangle. Vertices at the same place become one
+    /// Triangles, given as vertices \[m\] and three indices for each triangle. Vertices at the same place become one
     /// particle. What is wrong is reported when the cloth is built; [`Cloth::try_mesh`] tells at once.
     pub fn mesh(positions: impl Into<Vec<Vec3>>, indices: impl Into<Vec<u32>>) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl Cloth {
         }
     }
 
-    /// Where the particles lie at rest, in the entity's own space [m]: their order is that of the particles.
+    /// Where the particles lie at rest, in the entity's own space \[m\]: their order is that of the particles.
     ///
     /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded vertex.
     /// Empty when the shape is invalid.

@@ -36,7 +36,7 @@ pub struct ClothCollider {
 pub enum ColliderShape {
     /// A ball. Where the entity is scaled, the largest factor counts.
     Sphere {
-        /// [m].
+        /// \[m\].
         radius: f32,
     },
     /// Everything below the entity's x-z plane: the ground.
@@ -51,7 +51,7 @@ impl ClothCollider {
     /// between.
     pub const TELEPORT_SPEED: f32 = 200.0;
 
-    /// A ball of this radius [m].
+    /// A ball of this radius \[m\].
     pub fn sphere(radius: f32) -> Self {
         Self {
             shape: ColliderShape::Sphere { radius },
@@ -114,7 +114,7 @@ struct MovingCollider {
 }
 
 impl MovingCollider {
-    /// Where its centre is at a part of the step, in the world [m].
+    /// Where its centre is at a part of the step, in the world \[m\].
     fn center(&self, fraction: f32) -> Vec3 {
         self.start
             .translation

@@ -74,14 +74,14 @@ impl ClothParticles {
         }
     }
 
-    /// Kinetic energy [J] of all particles that are not pinned.
+    /// Kinetic energy \[J\] of all particles that are not pinned.
     pub fn kinetic_energy(&self) -> f64 {
         self.free()
             .map(|i| 0.5 * f64::from(self.mass[i]) * f64::from(self.velocity(i).length_squared()))
             .sum()
     }
 
-    /// Potential energy [J] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
+    /// Potential energy \[J\] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
     pub fn potential_energy(&self, gravity: Vec3) -> f64 {
         self.free()
             .map(|i| -f64::from(self.mass[i]) * f64::from(gravity.dot(self.position(i))))

@@ -33,7 +33,7 @@ pub enum ClothErrorKind {
     /// A grid's size is zero, negative or not finite.
     #[error("Cloth grid size is {value} m, must be positive and finite in both directions")]
     Size {
-        /// The size [m].
+        /// The size \[m\].
         value: Vec2,
     },
     /// A grid has too few or too many particles.

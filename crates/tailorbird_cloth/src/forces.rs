@@ -47,7 +47,7 @@ impl Impulse {
 }
 
 impl ClothForces {
-    /// Pushes a particle with a force [N] for one step.
+    /// Pushes a particle with a force \[N\] for one step.
     pub fn add_force(&mut self, particle: u32, force: Vec3) {
         self.forces.push((particle, force));
     }
@@ -57,7 +57,7 @@ impl ClothForces {
         self.accelerations.push((particle, acceleration));
     }
 
-    /// Gives an impulse [N s] at a point of the world [m]: shared among the free particles within `radius` [m] of it,
+    /// Gives an impulse [N s] at a point of the world \[m\]: shared among the free particles within `radius` \[m\] of it,
     /// most to the nearest; all to the nearest one where none is as near.
     pub fn add_impulse_at_point(&mut self, impulse: Vec3, point: Vec3, radius: f32) {
         self.impulses.push(Impulse {

@@ -55,17 +55,17 @@ impl ClothFrame {
         self.scale
     }
 
-    /// A point of the frame in the world [m].
+    /// A point of the frame in the world \[m\].
     pub fn to_world(&self, point: Vec3) -> Vec3 {
         self.current.rotation * point + Vec3::from(self.current.translation)
     }
 
-    /// A point of the world in the frame [m].
+    /// A point of the world in the frame \[m\].
     pub fn to_frame(&self, point: Vec3) -> Vec3 {
         self.current.rotation.inverse() * (point - Vec3::from(self.current.translation))
     }
 
-    /// A point of the world in the frame at the end of the step [m].
+    /// A point of the world in the frame at the end of the step \[m\].
     pub(crate) fn to_frame_at_end(self, point: Vec3) -> Vec3 {
         self.end.rotation.inverse() * (point - Vec3::from(self.end.translation))
     }

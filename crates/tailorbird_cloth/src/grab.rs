@@ -39,8 +39,8 @@ impl ClothGrab {
     /// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
     pub const MOST_STRETCH: f32 = 1.1;
 
-    /// Takes a particle, and those within `radius` [m] along the sheet (its direct neighbours at least). `target` is
-    /// where it is to be, in the world [m].
+    /// Takes a particle, and those within `radius` \[m\] along the sheet (its direct neighbours at least). `target` is
+    /// where it is to be, in the world \[m\].
     pub fn take(&mut self, particle: u32, radius: f32, target: Vec3) {
         self.held = Some(Hand {
             particle,
@@ -51,7 +51,7 @@ impl ClothGrab {
         });
     }
 
-    /// Moves the hand to a point of the world [m].
+    /// Moves the hand to a point of the world \[m\].
     pub fn move_to(&mut self, target: Vec3) {
         if let Some(hand) = &mut self.held {
             hand.target = target;
@@ -68,7 +68,7 @@ impl ClothGrab {
         self.held.as_ref().map(|hand| hand.particle)
     }
 
-    /// Where the hand is in the world [m].
+    /// Where the hand is in the world \[m\].
     pub fn target(&self) -> Option<Vec3> {
         self.held.as_ref().map(|hand| hand.target)
     }
@@ -158,7 +158,7 @@ pub fn apply_grab(
     }
 }
 
-/// The particles within `radius` [m] of one along the edges at rest, direct neighbours at least, without itself.
+/// The particles within `radius` \[m\] of one along the edges at rest, direct neighbours at least, without itself.
 fn patch(
     center: u32,
     radius: f32,

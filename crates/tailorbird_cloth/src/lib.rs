@@ -1,6 +1,6 @@
 //! Real-time cloth as ECS components and systems, without a renderer.
 //!
-//! A cloth is one entity. [`Cloth`] says what its rest shape is, everything else it needs comes with it:
+//! A cloth is one entity. [`Cloth`](cloth::Cloth) says what its rest shape is, everything else it needs comes with it:
 //!
 //! ```
 //! use bevy_app::{App, TaskPoolPlugin};

@@ -39,7 +39,7 @@ pub struct ClothMaterial {
     pub damping: f32,
     /// Coulomb friction [-]. The geometric mean with the collider's counts.
     pub friction: f32,
-    /// Distance at which the cloth's middle stays from colliders [m].
+    /// Distance at which the cloth's middle stays from colliders \[m\].
     pub thickness: f32,
     /// Drag coefficient of a flat plate across the flow [-].
     pub drag: f32,
@@ -141,7 +141,7 @@ impl ClothMaterial {
         ]
     }
 
-    /// The distance to keep from colliders [m]: none where the thickness is invalid.
+    /// The distance to keep from colliders \[m\]: none where the thickness is invalid.
     pub(crate) fn margin(&self) -> f32 {
         if self.thickness.is_finite() {
             self.thickness.max(0.0)

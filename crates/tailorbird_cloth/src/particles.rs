@@ -13,22 +13,22 @@ use crate::{frame::ClothFrame, points::Points};
 #[derive(Component, Reflect, Clone, Debug, Default)]
 #[reflect(Component, Default)]
 pub struct ClothParticles {
-    /// Position [m].
+    /// Position \[m\].
     #[reflect(ignore)]
     pub(crate) position: Points,
-    /// Position at the start of the substep [m]; with `position` and `substep_seconds` it gives the velocity.
+    /// Position at the start of the substep \[m\]; with `position` and `substep_seconds` it gives the velocity.
     #[reflect(ignore)]
     pub(crate) previous_position: Points,
-    /// What rounding took from the displacement of the substep [m]; part of the velocity.
+    /// What rounding took from the displacement of the substep \[m\]; part of the velocity.
     #[reflect(ignore)]
     pub(crate) lost_displacement: Points,
-    /// Position at the start of the step [m], to interpolate from, and to fall back to.
+    /// Position at the start of the step \[m\], to interpolate from, and to fall back to.
     #[reflect(ignore)]
     pub(crate) step_position: Points,
     /// Acceleration by wind and forces during this step [m/s²].
     #[reflect(ignore)]
     pub(crate) acceleration: Points,
-    /// Mass, pinned or not [kg].
+    /// Mass, pinned or not \[kg\].
     #[reflect(ignore)]
     pub(crate) mass: Vec<f32>,
     /// 1/mass [1/kg]; 0 is kinematic.
@@ -40,13 +40,13 @@ pub struct ClothParticles {
     /// Pinned particles by index.
     #[reflect(ignore)]
     pub(crate) pins: Vec<Held>,
-    /// The particle that is moved by a grab, and where to [m].
+    /// The particle that is moved by a grab, and where to \[m\].
     #[reflect(ignore)]
     pub(crate) grabbed: Option<Held>,
     /// Particles that are pulled along with the grabbed one.
     #[reflect(ignore)]
     pub(crate) pulled: Vec<Pulled>,
-    /// The time that `position` − `previous_position` took [s].
+    /// The time that `position` − `previous_position` took \[s\].
     pub(crate) substep_seconds: f32,
 }
 
@@ -54,7 +54,7 @@ pub struct ClothParticles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Held {
     pub particle: u32,
-    /// In the cloth's frame [m].
+    /// In the cloth's frame \[m\].
     pub target: Vec3,
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct Held {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pulled {
     pub particle: u32,
-    /// From the grabbed particle to where this one is pulled, in the cloth's frame [m].
+    /// From the grabbed particle to where this one is pulled, in the cloth's frame \[m\].
     pub offset: Vec3,
     /// Part of the way there that is gone in a sixtieth of a second, 0 to 1.
     pub weight: f32,
@@ -98,7 +98,7 @@ impl ClothParticles {
         self.position.is_empty()
     }
 
-    /// Where a particle is, in the cloth's frame [m].
+    /// Where a particle is, in the cloth's frame \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -106,23 +106,23 @@ impl ClothParticles {
         self.position.get(i)
     }
 
-    /// Where all particles are, in the cloth's frame [m].
+    /// Where all particles are, in the cloth's frame \[m\].
     pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
         self.position.iter()
     }
 
-    /// The coordinates as three arrays, in the cloth's frame [m].
+    /// The coordinates as three arrays, in the cloth's frame \[m\].
     pub fn points(&self) -> &Points {
         &self.position
     }
 
-    /// The coordinates a step before [`Self::points`], in the cloth's frame [m].
+    /// The coordinates a step before [`Self::points`], in the cloth's frame \[m\].
     pub fn previous_points(&self) -> &Points {
         &self.step_position
     }
 
     /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
-    /// frame [m].
+    /// frame \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -133,7 +133,7 @@ impl ClothParticles {
         from * (1.0 - fraction) + to * fraction
     }
 
-    /// Where a particle is in the world [m].
+    /// Where a particle is in the world \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -154,7 +154,7 @@ impl ClothParticles {
         }
     }
 
-    /// A particle's mass [kg].
+    /// A particle's mass \[kg\].
     ///
     /// # Panics
     /// When `i` is out of range.

@@ -25,7 +25,7 @@ pub struct ClothPins {
 pub struct ClothPin {
     /// What it holds.
     pub selection: PinSelection,
-    /// Where it holds it, in the cloth's frame [m]; `None` is where the particles are at the time (at rest, for a new
+    /// Where it holds it, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new
     /// cloth). The particles move there within one step, evenly over the substeps.
     pub target: Option<Vec3>,
     /// Who made it.
@@ -46,9 +46,9 @@ pub enum PinSelection {
     Edge(GridEdge),
     /// Every particle that lies within a ball at rest.
     Within {
-        /// Its centre, in the cloth's frame [m].
+        /// Its centre, in the cloth's frame \[m\].
         center: Vec3,
-        /// Its radius [m].
+        /// Its radius \[m\].
         radius: f32,
     },
 }
@@ -111,7 +111,7 @@ impl ClothPin {
         }
     }
 
-    /// Holds one particle at a point of the cloth's frame [m].
+    /// Holds one particle at a point of the cloth's frame \[m\].
     pub fn at(particle: u32, target: Vec3) -> Self {
         Self {
             target: Some(target),
@@ -142,12 +142,12 @@ impl ClothPins {
         Self::of(particles.into_iter().map(PinSelection::Particle))
     }
 
-    /// Every particle that lies within a ball (in the cloth's frame [m]) at rest.
+    /// Every particle that lies within a ball (in the cloth's frame \[m\]) at rest.
     pub fn within(center: Vec3, radius: f32) -> Self {
         Self::of([PinSelection::Within { center, radius }])
     }
 
-    /// Every particle of `cloth` for whose rest position (in the entity's own space [m]) `held` is true.
+    /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
     pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
         let rest = cloth.rest_positions();
         Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))

@@ -13,11 +13,11 @@ pub struct ClothHit {
     pub barycentric: Vec3,
     /// The corner that is nearest to the point.
     pub particle: usize,
-    /// The point [m].
+    /// The point \[m\].
     pub point: Vec3,
     /// Unit normal of the triangle, on the side that the ray came from.
     pub normal: Vec3,
-    /// Distance from the ray's origin [m].
+    /// Distance from the ray's origin \[m\].
     pub distance: f32,
 }
 
@@ -64,7 +64,7 @@ impl ClothParticles {
         })
     }
 
-    /// The particle nearest to a point of the cloth's frame [m], and its distance [m].
+    /// The particle nearest to a point of the cloth's frame \[m\], and its distance \[m\].
     pub fn closest_particle(&self, point: Vec3) -> Option<(usize, f32)> {
         self.positions()
             .map(|p| p.distance_squared(point))

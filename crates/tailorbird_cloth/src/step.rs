@@ -31,12 +31,12 @@ pub struct ClothStep {
 const PARALLEL_FROM: usize = 16_384;
 
 impl ClothStep {
-    /// The length of the step [s].
+    /// The length of the step \[s\].
     pub fn seconds(&self) -> f32 {
         self.seconds
     }
 
-    /// The length of a substep [s].
+    /// The length of a substep \[s\].
     pub fn substep_seconds(&self) -> f32 {
         self.seconds / self.substeps.max(1) as f32
     }
@@ -71,7 +71,7 @@ impl ClothStep {
         self.gravity
     }
 
-    /// Simulated time at the start of the step [s].
+    /// Simulated time at the start of the step \[s\].
     pub fn elapsed(&self) -> f64 {
         self.elapsed
     }

@@ -37,7 +37,7 @@ pub struct Wind {
 pub struct Gusts {
     /// Largest change of the wind's speed, as a fraction of its mean [-]; 0 is a steady wind.
     pub strength: f32,
-    /// Time between gusts [s].
+    /// Time between gusts \[s\].
     pub period: f32,
 }
 
@@ -90,7 +90,7 @@ impl Wind {
         }
     }
 
-    /// The velocity of the air at a time [s], in world axes [m/s].
+    /// The velocity of the air at a time \[s\], in world axes [m/s].
     ///
     /// A gust is a sum of sines whose periods have no common multiple. It changes the speed by at most
     /// [`Gusts::strength`] and swings the direction by at most half of that (in radians), about the axis that is

@@ -19,7 +19,7 @@ use tailorbird_cloth::{
 #[reflect(Component, Default)]
 #[require(ClothStatus)]
 pub struct ClothFromMesh {
-    /// Vertices no further apart than this [m] become one particle.
+    /// Vertices no further apart than this \[m\] become one particle.
     pub weld_distance: f32,
 }
 

@@ -36,7 +36,7 @@ pub struct Batch {
 pub struct DistanceConstraints {
     /// The particles at the ends.
     pub ends: Vec<[u32; 2]>,
-    /// Their distance at rest [m].
+    /// Their distance at rest \[m\].
     pub rest_lengths: Vec<f32>,
     /// All constraints, in the order in which they are solved.
     pub batches: Vec<Batch>,

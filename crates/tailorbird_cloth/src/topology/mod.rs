@@ -40,7 +40,7 @@ pub struct Topology {
     /// Different for each topology that was ever built; 0 is the empty one. What is derived from a topology is
     /// rebuilt when this changes.
     pub revision: u64,
-    /// Where the particles lie at rest, in the cloth's frame, scale included [m].
+    /// Where the particles lie at rest, in the cloth's frame, scale included \[m\].
     pub rest_positions: Vec<Vec3>,
     /// Columns and rows, where the cloth is a grid.
     pub grid: Option<UVec2>,
@@ -52,9 +52,9 @@ pub struct Topology {
     pub particle_of_vertex: Vec<u32>,
     /// The scale that is part of `rest_positions`.
     pub scale: Vec3,
-    /// Area of each triangle at rest [m²].
+    /// Area of each triangle at rest \[m²\].
     pub triangle_areas: Vec<f32>,
-    /// A third of the area of the triangles around each particle [m²].
+    /// A third of the area of the triangles around each particle \[m²\].
     pub areas: Vec<f32>,
     /// The springs, in batches that share no particle.
     pub constraints: DistanceConstraints,

@@ -12,7 +12,7 @@ pub struct Welded {
     pub particle_of_vertex: Vec<u32>,
 }
 
-/// Joins each vertex to the first one before it that is no further than `distance` [m] away.
+/// Joins each vertex to the first one before it that is no further than `distance` \[m\] away.
 ///
 /// Vertices are sorted into cubes of that size and looked up in the 27 around them: linear time, and the same result
 /// every time.

@@ -58,7 +58,7 @@ pub(super) fn nearest(
 }
 
 impl ClothsItem<'_, '_> {
-    /// The nearest place on this cloth and its distance [m], where it is near enough.
+    /// The nearest place on this cloth and its distance \[m\], where it is near enough.
     fn locate(&self, visible: VisiblePoint, seconds: f32) -> Option<(Located, f32)> {
         let (particles, triangles) = (self.particles, &self.topology.triangles);
         if particles.is_empty() || particles.len() != self.topology.particles() {

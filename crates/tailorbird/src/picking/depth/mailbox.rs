@@ -20,7 +20,7 @@ pub(super) struct Question {
     pub ndc: Vec2,
     /// Counts the frames in which something was asked.
     pub frame: u64,
-    /// Simulated time when it was asked [s].
+    /// Simulated time when it was asked \[s\].
     pub elapsed: f64,
 }
 

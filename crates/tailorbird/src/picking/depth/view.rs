@@ -10,18 +10,18 @@ pub(super) struct View {
     pub view_from_clip: Mat4,
     /// Where the camera was.
     pub world_from_view: GlobalTransform,
-    /// Upper left corner of the viewport in the texture [texels].
+    /// Upper left corner of the viewport in the texture \[texels\].
     pub origin: UVec2,
-    /// Size of the viewport [texels].
+    /// Size of the viewport \[texels\].
     pub size: UVec2,
 }
 
 /// A point that is visible in one texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisiblePoint {
-    /// Where, in the world [m].
+    /// Where, in the world \[m\].
     pub position: Vec3,
-    /// How wide the texel is there [m].
+    /// How wide the texel is there \[m\].
     pub texel_width: f32,
 }
 

@@ -34,7 +34,7 @@ pub struct Air {
     pub drag: f32,
     /// C_L [-].
     pub lift: f32,
-    /// Δt [s].
+    /// Δt \[s\].
     pub seconds: f32,
 }
 
@@ -64,8 +64,8 @@ impl Air {
 
 /// Adds drag and lift to the accelerations [m/s²] of the particles.
 ///
-/// The velocity of a particle is `per_second` · (`position` − `previous`). A particle of `mass` [kg] gets the share of
-/// each triangle's mass (areal density times `rest_areas` [m²]) that is its own, a third.
+/// The velocity of a particle is `per_second` · (`position` − `previous`). A particle of `mass` \[kg\] gets the share of
+/// each triangle's mass (areal density times `rest_areas` \[m²\]) that is its own, a third.
 ///
 /// # Panics
 /// When a corner is not below the number of particles.

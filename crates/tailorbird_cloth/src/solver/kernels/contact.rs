@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-/// A particle's path through a substep, relative to the collider: `from` its start, `to` its end [m].
+/// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
     /// At the start of the substep.
@@ -12,10 +12,10 @@ pub struct Path {
 }
 
 impl Path {
-    /// Resolves a contact with a surface of unit `normal` that `to` lies `depth` [m] below.
+    /// Resolves a contact with a surface of unit `normal` that `to` lies `depth` \[m\] below.
     ///
     /// 1. `to` is pushed out along the normal.
-    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` [m]) is taken back, by at
+    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by at
     ///    most `friction` · `depth`: the push is what presses the two together.
     /// 3. What is left of motion away from the surface comes from the push alone, so `from` follows: a particle that was
     ///    inside does not pop out with a speed.

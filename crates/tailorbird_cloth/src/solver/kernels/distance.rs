@@ -10,7 +10,7 @@
 
 use crate::points::Points;
 
-/// A distance below this [m] has no direction; the shorter, the less the constraint moves its ends.
+/// A distance below this \[m\] has no direction; the shorter, the less the constraint moves its ends.
 const SHORTEST: f32 = 1e-9;
 
 /// Inverse masses below this [1/kg] count as this, so that a constraint between two held ends divides by something.

@@ -8,13 +8,13 @@ use crate::points::Points;
 /// A half-space during one substep, in the frame of the particles.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingHalfSpace {
-    /// A point of the plane at the start [m].
+    /// A point of the plane at the start \[m\].
     pub from: Vec3,
-    /// The same point at the end [m].
+    /// The same point at the end \[m\].
     pub to: Vec3,
     /// Unit normal, out of the solid.
     pub normal: Vec3,
-    /// Distance that is kept from the plane [m].
+    /// Distance that is kept from the plane \[m\].
     pub margin: f32,
     /// Coulomb friction [-].
     pub friction: f32,

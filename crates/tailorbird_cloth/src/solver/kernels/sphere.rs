@@ -11,13 +11,13 @@ const ROUNDING: f32 = 1e-4;
 /// A sphere during one substep, in the frame of the particles.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingSphere {
-    /// Centre at the start [m].
+    /// Centre at the start \[m\].
     pub from: Vec3,
-    /// Centre at the end [m].
+    /// Centre at the end \[m\].
     pub to: Vec3,
-    /// Rotation during the substep: axis times angle [rad].
+    /// Rotation during the substep: axis times angle \[rad\].
     pub rotation: Vec3,
-    /// Radius, margin included [m].
+    /// Radius, margin included \[m\].
     pub radius: f32,
     /// Coulomb friction [-].
     pub friction: f32,

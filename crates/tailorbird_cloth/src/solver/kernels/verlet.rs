@@ -10,9 +10,9 @@ use crate::points::Points;
 
 /// One substep for all particles.
 pub struct Verlet {
-    /// Length of the substep, h [s].
+    /// Length of the substep, h \[s\].
     pub seconds: f32,
-    /// Length of the substep before [s]: x − x⁻ took this long. 0 for a cloth that has not moved yet.
+    /// Length of the substep before \[s\]: x − x⁻ took this long. 0 for a cloth that has not moved yet.
     pub seconds_before: f32,
     /// Rate at which velocity decays [1/s].
     pub damping: f32,
@@ -37,7 +37,7 @@ impl Verlet {
     /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
     /// `acceleration` comes in addition to gravity [m/s²]. `lost` is what rounding took from the displacement of each
-    /// particle in the substep before [m], and is replaced by what it takes in this one.
+    /// particle in the substep before \[m\], and is replaced by what it takes in this one.
     pub fn step(
         &self,
         position: &mut Points,
