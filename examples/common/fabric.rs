@@ -75,7 +75,7 @@ impl Fabrics {
     ) -> StandardMaterial {
         let denim = preset == "denim";
         let (weave, dye) = if denim {
-            (&self.denim, Color::srgb(0.72, 0.76, 0.85))
+            (&self.denim, Color::srgb(0.55, 0.60, 0.72))
         } else {
             (&self.cotton, color)
         };

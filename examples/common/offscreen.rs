@@ -40,7 +40,7 @@ pub struct OffscreenOptions {
     pub every: f32,
     /// Width and height [pixels].
     pub size: UVec2,
-    /// Smooth edges, even where that takes long.
+    /// Smooth edges, even without a graphics card, where that takes long.
     pub fine: bool,
     /// The scene, and how.
     pub settings: DemoSettings,

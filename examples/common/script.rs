@@ -134,7 +134,7 @@ const CURTAIN: &str = "
 3.8 key P
 4.0 hold Up for 1.2
 5.2 hold Down for 1.2
-5.6 wind 1.5 0 -4
+5.6 wind 1 0 -2.5
 ";
 
 /// The wind turns and drops; a corner is held for a while.
@@ -153,8 +153,8 @@ const TABLECLOTH: &str = "
 2.5 press
 2.5 move 0.25 -0.3 over 0.9
 3.8 release
-4.4 hold Right for 0.8
-5.2 hold PageUp for 0.5
+4.4 hold Left for 0.3
+5.2 hold PageUp for 0.3
 ";
 
 /// The ball pushes up, goes round, and is let go.

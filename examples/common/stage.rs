@@ -29,6 +29,8 @@ impl Plugin for StagePlugin {
         app.add_plugins(OrbitCameraPlugin)
             .insert_resource(DirectionalLightShadowMap { size: 2048 })
             .insert_resource(GlobalAmbientLight::NONE)
+            // Between the ground's edge and the sky.
+            .insert_resource(ClearColor(HORIZON))
             .insert_resource(StageCamera(self.clone()))
             .add_systems(
                 Startup,
@@ -157,13 +159,15 @@ fn spawn_sky(
     ));
 }
 
-/// The upper half of a sphere.
+/// The upper half of a sphere, and a little more, so that it reaches below the horizon.
 fn dome() -> Mesh {
     const RINGS: u32 = 32;
     const SIDES: u32 = 48;
+    /// [rad]
+    const BELOW: f32 = 0.03;
     let mut positions = Vec::new();
     for ring in 0..=RINGS {
-        let (sin, cos) = (FRAC_PI_2 * ring as f32 / RINGS as f32).sin_cos();
+        let (sin, cos) = ((FRAC_PI_2 + BELOW) * ring as f32 / RINGS as f32 - BELOW).sin_cos();
         for side in 0..=SIDES {
             let around = Vec2::from_angle(TAU * side as f32 / SIDES as f32) * cos;
             positions.push([RADIUS * around.x, RADIUS * sin, RADIUS * around.y]);

@@ -46,6 +46,7 @@ fn show_panel(
     egui::Window::new("Tailorbird")
         .anchor(egui::Align2::RIGHT_TOP, [-6.0, 6.0])
         .resizable(false)
+        .fixed_size([PANEL_WIDTH, height - 50.0])
         .show(context, |ui| {
             ui.set_width(PANEL_WIDTH);
             let mut state = PanelState {
@@ -53,7 +54,7 @@ fn show_panel(
                 status: &status,
             };
             egui::ScrollArea::vertical()
-                .max_height(height - 64.0)
+                .auto_shrink(false)
                 .show(ui, |ui| panel(ui, &mut state));
         });
     settings.set_if_neq(changed);

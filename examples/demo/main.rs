@@ -18,6 +18,7 @@ use common::{
     scenes::SceneKind,
     script::{self, Script},
     settings::DemoSettings,
+    stage::StagePlugin,
     window::{ExitAfterFrames, PanelPlugin},
 };
 use tailorbird::prelude::*;
@@ -44,7 +45,7 @@ struct Arguments {
     /// With --offscreen: what happens, instead of the scene's own script
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// With --offscreen: smooth edges, even without a graphics card, where they take three times as long
+    /// Smooth edges, even without a graphics card, where they take three times as long
     #[arg(long)]
     fine: bool,
     /// Width and height [pixels]
@@ -93,7 +94,10 @@ fn play(arguments: &Arguments) -> ExitCode {
             ClothPlugins::default(),
             DemoPlugin {
                 settings: settings(arguments, arguments.scene.unwrap_or_default()),
-                ..default()
+                stage: StagePlugin {
+                    fine: arguments.fine,
+                    ..default()
+                },
             },
             PanelPlugin,
             ExitAfterFrames,
