@@ -163,7 +163,6 @@ fn spawn_sky(
 fn dome() -> Mesh {
     const RINGS: u32 = 32;
     const SIDES: u32 = 48;
-    /// [rad]
     const BELOW: f32 = 0.03;
     let mut positions = Vec::new();
     for ring in 0..=RINGS {
