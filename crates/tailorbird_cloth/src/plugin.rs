@@ -142,6 +142,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothNormals>()
         .register_type::<ClothBounds>()
         .register_type::<ClothCollider>()
+        .register_type::<crate::collider::ColliderPose>()
         .register_type::<ClothSettings>()
         .register_type::<ClothStep>()
         .register_type::<ClothStepTime>()

@@ -33,7 +33,8 @@ pub enum ClothPickingBackend {
     Ray,
     /// The depth that the camera sees under the pointer, and the particle nearest to that point. Everything that the camera
     /// draws in its depth prepass hides cloth behind it. The answer comes a few frames late. Works on cameras with
-    /// a `DepthPrepass`.
+    /// a `DepthPrepass`. Transparent materials are not in it, so such cloth is not found; and a touch that presses as it
+    /// lands has no answer yet, so it does not grab.
     Depth,
 }
 
