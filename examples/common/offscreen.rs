@@ -219,15 +219,7 @@ impl Offscreen {
         for mut camera in cameras.iter_mut(world) {
             camera.is_active = looks;
         }
-        let t = std::time::Instant::now();
         self.app.update();
-        let d = self.app.world().resource::<ClothStepTime>();
-        eprintln!(
-            "FRAME {:.2} looks {looks} {:?} step {:?}",
-            self.time,
-            t.elapsed(),
-            d.total
-        );
     }
 }
 
