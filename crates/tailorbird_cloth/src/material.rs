@@ -153,13 +153,13 @@ impl ClothMaterial {
     /// What is wrong with this material.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
+        // Asked in every step, so that names are put together for wrong values alone.
         let check = |field: &str, value: f32, unit: &str| {
-            ClothErrorKind::number(
-                &format!("ClothMaterial.{field}"),
+            (!not_negative(value)).then(|| ClothErrorKind::Value {
+                field: format!("ClothMaterial.{field}"),
                 value,
-                not_negative,
-                &format!("at least 0 and finite [{unit}]"),
-            )
+                allowed: format!("at least 0 and finite [{unit}]"),
+            })
         };
         [
             ClothErrorKind::number(
