@@ -93,6 +93,7 @@ fn draw(
             continue;
         }
         let at = |i: usize| particles.world_position(i, frame);
+        let stored = |i: usize| at(particles.order().given(i as u32) as usize);
         let size = (topology.areas.iter().sum::<f32>() / particles.len() as f32).sqrt();
 
         for family in ConstraintFamily::ALL {
@@ -100,7 +101,7 @@ fn draw(
                 continue;
             };
             for ([a, b], _) in topology.constraints.family(family) {
-                gizmos.line(at(a as usize), at(b as usize), color);
+                gizmos.line(stored(a as usize), stored(b as usize), color);
             }
         }
         if show.particles {
@@ -119,11 +120,11 @@ fn draw(
         if show.normals {
             for i in 0..normals.len() {
                 let from = match normals.shading() {
-                    ClothShading::Smooth => at(i),
+                    ClothShading::Smooth => stored(i),
                     ClothShading::Flat => {
                         topology.triangles[i]
                             .iter()
-                            .map(|&k| at(k as usize))
+                            .map(|&k| stored(k as usize))
                             .sum::<Vec3>()
                             / 3.0
                     }

@@ -7,6 +7,7 @@ use bevy_reflect::prelude::*;
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
+    solver::kernels::range::range,
     step::{ClothStep, for_each_cloth},
 };
 
@@ -40,13 +41,7 @@ pub fn update_bounds(
         if particles.is_empty() {
             return;
         }
-        let range = |values: &[f32], (low, high)| {
-            values
-                .iter()
-                .fold((low, high), |(low, high): (f32, f32), v| {
-                    (low.min(*v), high.max(*v))
-                })
-        };
+        let range = |values: &[f32], ends| range(step.level(), values, ends);
         let (now, before) = (&particles.position, &particles.step_position);
         let empty = (f32::INFINITY, f32::NEG_INFINITY);
         let x = range(&before.x, range(&now.x, empty));

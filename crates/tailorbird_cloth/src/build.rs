@@ -37,7 +37,7 @@ pub fn build_topology(
         match Topology::build(&cloth.shape, frame.scale()) {
             Ok(new) => {
                 *particles = keep_shape(&topology, &new, &particles)
-                    .unwrap_or_else(|| ClothParticles::at_rest(&new.rest_positions));
+                    .unwrap_or_else(|| ClothParticles::at_rest(&new));
                 let dropped = new.dropped.clone();
                 topology.0 = Arc::new(new);
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, dropped);

@@ -15,6 +15,8 @@ use crate::{
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
     pins::ClothPins,
+    solver::ClothSolver,
+    tethers::ClothTethers,
     topology::{ClothTopology, Topology, weld::weld},
     validate,
 };
@@ -31,6 +33,8 @@ use crate::{
     ClothForces,
     ClothShading,
     ClothStatus,
+    ClothSolver,
+    ClothTethers,
     ClothTopology,
     ClothFrame,
     ClothParticles,

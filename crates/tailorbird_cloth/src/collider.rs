@@ -11,9 +11,14 @@ use crate::{
     frame::{ClothFrame, split},
     material::ClothMaterial,
     particles::ClothParticles,
-    solver::kernels::{
-        half_space::{self, MovingHalfSpace},
-        sphere::{self, MovingSphere},
+    solver::{
+        ClothSolver,
+        kernels::{
+            contact::{Phase, Touching},
+            half_space::{self, MovingHalfSpace},
+            lanes::{Shared, SharedPoints},
+            sphere::{self, MovingSphere},
+        },
     },
     step::{ClothStep, for_each_cloth},
 };
@@ -198,40 +203,58 @@ pub fn snapshot_colliders(
     list.colliders.sort_by_key(|collider| collider.entity);
 }
 
+/// Looks for contacts before the constraints are solved: pushes particles out, and notes where they touch.
+///
+/// For [`ClothSolver::Chains`] alone, which then moves those particles along the surface.
+pub fn find_contacts(
+    step: Res<ClothStep>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<
+        (
+            &ClothFrame,
+            &ClothMaterial,
+            &ClothSolver,
+            &mut ClothParticles,
+        ),
+        With<Cloth>,
+    >,
+) {
+    for_each_cloth!(
+        step,
+        cloths,
+        |(frame, material, solver, mut particles): (
+            &ClothFrame,
+            &ClothMaterial,
+            &ClothSolver,
+            Mut<ClothParticles>
+        )| {
+            if *solver != ClothSolver::Chains || colliders.is_empty() {
+                particles.contacts.any = false;
+                return;
+            }
+            let len = particles.len();
+            particles.contacts.reset(len);
+            for collider in &colliders.colliders {
+                collider.collide(Phase::Approach, &step, frame, material, &mut particles);
+            }
+        }
+    );
+}
+
 /// Keeps particles out of the spheres.
 pub fn collide_sphere(
     step: Res<ClothStep>,
     colliders: Res<ClothColliders>,
     mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
 ) {
-    let (from, to) = fractions(&step);
     for_each_cloth!(step, cloths, |(frame, material, mut particles): (
         &ClothFrame,
         &ClothMaterial,
         Mut<ClothParticles>
     )| {
         for collider in &colliders.colliders {
-            let ColliderShape::Sphere { radius } = collider.shape else {
-                continue;
-            };
-            let turned = collider.end.rotation * collider.start.rotation.inverse();
-            let sphere = MovingSphere {
-                from: frame.to_frame(collider.center(from)),
-                to: frame.to_frame(collider.center(to)),
-                rotation: frame.vector_to_frame(turned.to_scaled_axis() / step.substeps() as f32),
-                radius: radius + material.margin(),
-                friction: combined_friction(collider.friction, material.friction),
-            };
-            let ClothParticles {
-                position,
-                previous_position,
-                inv_mass,
-                grabbed,
-                ..
-            } = &mut *particles;
-            sphere::collide_all(&sphere, inv_mass, position, previous_position);
-            if let Some(held) = grabbed {
-                sphere::collide_one(&sphere, held.particle as usize, position, previous_position);
+            if let ColliderShape::Sphere { .. } = collider.shape {
+                collider.collide(Phase::Final, &step, frame, material, &mut particles);
             }
         }
     });
@@ -243,42 +266,93 @@ pub fn collide_half_space(
     colliders: Res<ClothColliders>,
     mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
 ) {
-    let (from, to) = fractions(&step);
     for_each_cloth!(step, cloths, |(frame, material, mut particles): (
         &ClothFrame,
         &ClothMaterial,
         Mut<ClothParticles>
     )| {
         for collider in &colliders.colliders {
-            let ColliderShape::HalfSpace = collider.shape else {
-                continue;
-            };
-            let rotation = collider.start.rotation.slerp(collider.end.rotation, to);
-            let plane = MovingHalfSpace {
-                from: frame.to_frame(collider.center(from)),
-                to: frame.to_frame(collider.center(to)),
-                normal: frame.vector_to_frame(rotation * Vec3::Y),
-                margin: material.margin(),
-                friction: combined_friction(collider.friction, material.friction),
-            };
-            let ClothParticles {
-                position,
-                previous_position,
-                inv_mass,
-                grabbed,
-                ..
-            } = &mut *particles;
-            half_space::collide_all(&plane, inv_mass, position, previous_position);
-            if let Some(held) = grabbed {
-                half_space::collide_one(
-                    &plane,
-                    held.particle as usize,
-                    position,
-                    previous_position,
-                );
+            if let ColliderShape::HalfSpace = collider.shape {
+                collider.collide(Phase::Final, &step, frame, material, &mut particles);
             }
         }
     });
+}
+
+impl MovingCollider {
+    /// Keeps the particles of one cloth out.
+    fn collide(
+        &self,
+        phase: Phase,
+        step: &ClothStep,
+        frame: &ClothFrame,
+        material: &ClothMaterial,
+        particles: &mut ClothParticles,
+    ) {
+        let (from, to) = fractions(step);
+        let (center_from, center_to) = (
+            frame.to_frame(self.center(from)),
+            frame.to_frame(self.center(to)),
+        );
+        let friction = combined_friction(self.friction, material.friction);
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            grabbed,
+            contacts,
+            ..
+        } = particles;
+        let len = inv_mass.len();
+        let known = contacts.depth.len() == len && (phase == Phase::Approach || contacts.any);
+        let touching = Touching {
+            position: SharedPoints::new(position),
+            previous: SharedPoints::new(previous_position),
+            inv_mass: Shared::new(inv_mass),
+            contacts: known.then(|| {
+                (
+                    SharedPoints::new(&mut contacts.normal),
+                    Shared::new(&mut contacts.depth),
+                )
+            }),
+            phase,
+        };
+        let held = grabbed.map(|held| held.particle as usize);
+        let any = match self.shape {
+            ColliderShape::Sphere { radius } => {
+                let turned = self.end.rotation * self.start.rotation.inverse();
+                let sphere = MovingSphere {
+                    from: center_from,
+                    to: center_to,
+                    rotation: frame
+                        .vector_to_frame(turned.to_scaled_axis() / step.substeps() as f32),
+                    radius: radius + material.margin(),
+                    friction,
+                };
+                let any = sphere::collide_all(step.level(), &sphere, touching, 0..len);
+                if let Some(i) = held {
+                    sphere::collide_one(&sphere, i, position, previous_position);
+                }
+                any
+            }
+            ColliderShape::HalfSpace => {
+                let rotation = self.start.rotation.slerp(self.end.rotation, to);
+                let plane = MovingHalfSpace {
+                    from: center_from,
+                    to: center_to,
+                    normal: frame.vector_to_frame(rotation * Vec3::Y),
+                    margin: material.margin(),
+                    friction,
+                };
+                let any = half_space::collide_all(step.level(), &plane, touching, 0..len);
+                if let Some(i) = held {
+                    half_space::collide_one(&plane, i, position, previous_position);
+                }
+                any
+            }
+        };
+        contacts.any |= any && phase == Phase::Approach;
+    }
 }
 
 /// The parts of the step at which the substep in progress starts and ends.

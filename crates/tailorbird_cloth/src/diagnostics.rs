@@ -6,10 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-use crate::{
-    particles::ClothParticles,
-    topology::{Topology, constraints::ConstraintFamily},
-};
+use crate::{particles::ClothParticles, topology::Topology};
 
 /// How long the last step took. Written by the cloth systems alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
@@ -49,13 +46,14 @@ impl ClothParticles {
     /// How far the edges are stretched. Zero for a cloth without edges.
     pub fn stretch(&self, topology: &Topology) -> Stretch {
         let mut values: Vec<f32> = topology
-            .constraints
-            .family(ConstraintFamily::Stretch)
+            .stretch_edges()
+            .into_iter()
             .filter(|([a, b], rest)| (a.max(b).to_owned() as usize) < self.len() && *rest > 0.0)
             .map(|([a, b], rest)| {
                 let length = self
-                    .position(a as usize)
-                    .distance(self.position(b as usize));
+                    .position
+                    .get(a as usize)
+                    .distance(self.position.get(b as usize));
                 (length / rest - 1.0).max(0.0)
             })
             .collect();
@@ -77,21 +75,23 @@ impl ClothParticles {
     /// Kinetic energy \[J\] of all particles that are not pinned.
     pub fn kinetic_energy(&self) -> f64 {
         self.free()
-            .map(|i| 0.5 * f64::from(self.mass[i]) * f64::from(self.velocity(i).length_squared()))
+            .map(|i| {
+                0.5 * f64::from(self.mass[i]) * f64::from(self.stored_velocity(i).length_squared())
+            })
             .sum()
     }
 
     /// Potential energy \[J\] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
     pub fn potential_energy(&self, gravity: Vec3) -> f64 {
         self.free()
-            .map(|i| -f64::from(self.mass[i]) * f64::from(gravity.dot(self.position(i))))
+            .map(|i| -f64::from(self.mass[i]) * f64::from(gravity.dot(self.position.get(i))))
             .sum()
     }
 
     /// Linear momentum [kg m/s] of all particles that are not pinned, in the axes of the frame.
     pub fn momentum(&self) -> Vec3 {
         self.free()
-            .map(|i| (self.velocity(i) * self.mass[i]).as_dvec3())
+            .map(|i| (self.stored_velocity(i) * self.mass[i]).as_dvec3())
             .sum::<bevy_math::DVec3>()
             .as_vec3()
     }
@@ -101,10 +101,10 @@ impl ClothParticles {
         self.free()
             .map(|i| {
                 // Half way through the substep, where the velocity is that of the difference.
-                let place = 0.5 * (self.position(i) + self.previous_position.get(i));
+                let place = 0.5 * (self.position.get(i) + self.previous_position.get(i));
                 place
                     .as_dvec3()
-                    .cross((self.velocity(i) * self.mass[i]).as_dvec3())
+                    .cross((self.stored_velocity(i) * self.mass[i]).as_dvec3())
             })
             .sum::<bevy_math::DVec3>()
             .as_vec3()

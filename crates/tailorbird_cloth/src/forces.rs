@@ -99,7 +99,7 @@ pub fn apply_forces(
         if particles.is_empty() {
             continue;
         }
-        particles.acceleration.fill(Vec3::ZERO);
+        particles.acceleration.clear();
         if forces.is_empty() {
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, None);
             continue;
@@ -120,16 +120,17 @@ pub fn apply_forces(
         let len = particles.len();
         for &(particle, force) in &forces.forces {
             if check("ClothForces.force", particle, force, len) {
-                let i = particle as usize;
+                let i = particles.order.stored(particle) as usize;
                 let acceleration = frame.vector_to_frame(force) * particles.inv_mass[i];
-                particles.acceleration.add(i, acceleration);
+                particles.accelerations().add(i, acceleration);
             }
         }
         for &(particle, acceleration) in &forces.accelerations {
             if check("ClothForces.acceleration", particle, acceleration, len) {
+                let i = particles.order.stored(particle) as usize;
                 particles
-                    .acceleration
-                    .add(particle as usize, frame.vector_to_frame(acceleration));
+                    .accelerations()
+                    .add(i, frame.vector_to_frame(acceleration));
             }
         }
         for impulse in &forces.impulses {
@@ -163,6 +164,7 @@ impl ClothParticles {
         let distance_squared = |position: Vec3| position.distance_squared(point);
         let weight =
             |position: Vec3| (1.0 - distance_squared(position) / (radius * radius)).max(0.0);
+        self.accelerations();
         let Self {
             position,
             acceleration,

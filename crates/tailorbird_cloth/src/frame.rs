@@ -166,16 +166,8 @@ pub fn advance_frames(
         Mut<ClothFrame>,
         Mut<ClothParticles>
     )| {
-        let ClothParticles {
-            position,
-            previous_position,
-            lost_displacement,
-            acceleration,
-            inv_mass,
-            ..
-        } = &mut *particles;
         if !frame.is_moving() {
-            rigid::keep_frame(inv_mass, position, previous_position);
+            particles.hold_still();
             return;
         }
         let to = if step.substeps_left() == 1 {
@@ -189,6 +181,14 @@ pub fn advance_frames(
                 frame.start.rotation.slerp(frame.end.rotation, fraction),
             )
         };
+        let ClothParticles {
+            position,
+            previous_position,
+            lost_displacement,
+            acceleration,
+            inv_mass,
+            ..
+        } = &mut *particles;
         let from = frame.current;
         frame.current = to;
         let inverse: Quat = to.rotation.inverse();

@@ -108,6 +108,7 @@ pub fn apply_grab(
 ) {
     for (entity, mut grab, topology, frame, mut particles, mut status) in &mut cloths {
         let before = particles.grabbed.map(|held| held.particle);
+        let order = particles.order.clone();
         let error = match &mut grab.bypass_change_detection().held {
             None => {
                 particles.grabbed = None;
@@ -136,14 +137,14 @@ pub fn apply_grab(
                 particles.grabbed = None;
                 if !particles.is_pinned(hand.particle as usize) {
                     particles.grabbed = Some(Held {
-                        particle: hand.particle,
+                        particle: order.stored(hand.particle),
                         // Where the frame will be when the hand is reached.
                         target: frame.to_frame_at_end(hand.target),
                     });
                     particles
                         .pulled
                         .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
-                            particle,
+                            particle: order.stored(particle),
                             offset,
                             weight,
                         }));
@@ -165,7 +166,9 @@ fn patch(
     topology: &ClothTopology,
     particles: &ClothParticles,
 ) -> Vec<(u32, f32, Vec3)> {
+    let order = &particles.order;
     let rest = |i: u32| topology.rest_positions[i as usize];
+    let center = order.stored(center);
     let ring = topology
         .neighbors
         .of(center)
@@ -174,7 +177,7 @@ fn patch(
         .fold(0.0, f32::max);
     // Beyond the first ring, so that the weight there is not 0.
     let radius = radius.max(1.5 * ring);
-    let held_at = particles.position(center as usize);
+    let held_at = particles.position.get(center as usize);
     let mut seen = vec![center];
     let mut queue = VecDeque::from([center]);
     let mut patch = Vec::new();
@@ -184,8 +187,8 @@ fn patch(
             if weight > 0.0 && !seen.contains(&particle) {
                 seen.push(particle);
                 queue.push_back(particle);
-                let offset = particles.position(particle as usize) - held_at;
-                patch.push((particle, weight, offset));
+                let offset = particles.position.get(particle as usize) - held_at;
+                patch.push((order.given(particle), weight, offset));
             }
         }
     }

@@ -32,6 +32,7 @@ pub mod forces;
 pub mod frame;
 pub mod grab;
 pub mod material;
+mod memory;
 pub mod normals;
 pub mod particles;
 pub mod pins;
@@ -42,6 +43,7 @@ pub mod schedule;
 pub mod settings;
 pub mod solver;
 pub mod step;
+pub mod tethers;
 pub mod topology;
 pub mod validate;
 pub mod wind;
@@ -64,7 +66,8 @@ pub mod prelude {
         plugin::ClothPlugin,
         query::ClothHit,
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
-        settings::ClothSettings,
+        settings::{ClothSettings, InstructionSet},
+        solver::ClothSolver,
         step::ClothStep,
         topology::ClothTopology,
         validate::ClothReset,

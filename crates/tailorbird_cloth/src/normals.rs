@@ -47,6 +47,11 @@ impl ClothNormals {
         self.current.len()
     }
 
+    /// What the normals take on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        self.current.memory_bytes() + self.previous.memory_bytes()
+    }
+
     /// Whether there are none yet.
     pub fn is_empty(&self) -> bool {
         self.current.is_empty()
@@ -116,9 +121,13 @@ pub fn recompute_normals(
         }
         previous.copy_from(current);
         match shading {
-            ClothShading::Smooth => {
-                normals::smooth(&topology.triangles, &particles.position, current);
-            }
+            ClothShading::Smooth => match &topology.lattice {
+                // The cells of a mesh are cut in its own way.
+                Some(lattice) if topology.grid.is_some() => {
+                    normals::smooth_lattice(step.level(), lattice, &particles.position, current);
+                }
+                _ => normals::smooth(&topology.triangles, &particles.position, current),
+            },
             ClothShading::Flat => {
                 normals::flat(&topology.triangles, &particles.position, current);
             }

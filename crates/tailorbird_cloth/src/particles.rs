@@ -4,15 +4,27 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-use crate::{frame::ClothFrame, points::Points};
+use crate::{
+    frame::ClothFrame,
+    memory::heap,
+    points::Points,
+    solver::kernels::contact::Contacts,
+    topology::{Topology, order::ParticleOrder},
+};
 
 /// The state of all particles of one cloth, as parallel arrays, in the cloth's frame.
+///
+/// Particles have the numbers of [`Cloth::rest_positions`](crate::cloth::Cloth::rest_positions), but where *storage order* is
+/// written: see [`ParticleOrder`].
 ///
 /// Read it freely. It is written by the cloth systems alone: pins, grabs and [`ClothForces`](crate::forces::ClothForces)
 /// are the ways to move it.
 #[derive(Component, Reflect, Clone, Debug, Default)]
 #[reflect(Component, Default)]
 pub struct ClothParticles {
+    /// The order in which all that follows is stored.
+    #[reflect(ignore)]
+    pub(crate) order: ParticleOrder,
     /// Position \[m\].
     #[reflect(ignore)]
     pub(crate) position: Points,
@@ -25,19 +37,24 @@ pub struct ClothParticles {
     /// Position at the start of the step \[m\], to interpolate from, and to fall back to.
     #[reflect(ignore)]
     pub(crate) step_position: Points,
-    /// Acceleration by wind and forces during this step [m/s²].
+    /// Acceleration by wind and forces during this step [m/s²]; empty where there is none.
     #[reflect(ignore)]
     pub(crate) acceleration: Points,
     /// Mass, pinned or not \[kg\].
     #[reflect(ignore)]
     pub(crate) mass: Vec<f32>,
+    /// What the masses were made of [kg/m²].
+    pub(crate) areal_density: f32,
     /// 1/mass [1/kg]; 0 is kinematic.
     #[reflect(ignore)]
     pub(crate) inv_mass: Vec<f32>,
+    /// Contacts in this substep, noted before the constraints are solved.
+    #[reflect(ignore)]
+    pub(crate) contacts: Contacts,
     /// Multipliers of the constraints; scratch of a substep.
     #[reflect(ignore)]
     pub(crate) lambda: Vec<f32>,
-    /// Pinned particles by index.
+    /// Pinned particles, by the number that was given to them.
     #[reflect(ignore)]
     pub(crate) pins: Vec<Held>,
     /// The particle that is moved by a grab, and where to \[m\].
@@ -53,6 +70,7 @@ pub struct ClothParticles {
 /// A particle that is held at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Held {
+    /// In storage order.
     pub particle: u32,
     /// In the cloth's frame \[m\].
     pub target: Vec3,
@@ -61,6 +79,7 @@ pub(crate) struct Held {
 /// A particle that is pulled along with the grabbed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pulled {
+    /// In storage order.
     pub particle: u32,
     /// From the grabbed particle to where this one is pulled, in the cloth's frame \[m\].
     pub offset: Vec3,
@@ -70,8 +89,11 @@ pub(crate) struct Pulled {
 
 impl ClothParticles {
     /// Particles at rest, without mass yet.
-    pub(crate) fn at_rest(rest_positions: &[Vec3]) -> Self {
-        Self::with_positions(rest_positions.iter().copied().collect())
+    pub(crate) fn at_rest(topology: &Topology) -> Self {
+        Self {
+            order: topology.order.clone(),
+            ..Self::with_positions(topology.rest_positions.iter().copied().collect())
+        }
     }
 
     pub(crate) fn with_positions(position: Points) -> Self {
@@ -80,7 +102,6 @@ impl ClothParticles {
             previous_position: position.clone(),
             step_position: position.clone(),
             lost_displacement: Points::zeroed(len),
-            acceleration: Points::zeroed(len),
             mass: vec![0.0; len],
             inv_mass: vec![0.0; len],
             position,
@@ -93,6 +114,28 @@ impl ClothParticles {
         self.position.len()
     }
 
+    /// What the state takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let points = [
+            &self.position,
+            &self.previous_position,
+            &self.lost_displacement,
+            &self.step_position,
+            &self.acceleration,
+            &self.contacts.normal,
+        ];
+        let numbers = [
+            &self.mass,
+            &self.inv_mass,
+            &self.lambda,
+            &self.contacts.depth,
+        ];
+        points.map(Points::memory_bytes).iter().sum::<usize>()
+            + numbers.map(heap).iter().sum::<usize>()
+            + heap(&self.pins)
+            + heap(&self.pulled)
+    }
+
     /// Whether there are none: the cloth is not built yet, or its shape is invalid.
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
@@ -103,26 +146,36 @@ impl ClothParticles {
     /// # Panics
     /// When `i` is out of range.
     pub fn position(&self, i: usize) -> Vec3 {
-        self.position.get(i)
+        self.position.get(self.stored(i))
     }
 
     /// Where all particles are, in the cloth's frame \[m\].
     pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
-        self.position.iter()
+        (0..self.len()).map(|i| self.position(i))
     }
 
-    /// The coordinates as three arrays, in the cloth's frame \[m\].
+    /// How the particles are numbered where they are stored.
+    pub fn order(&self) -> &ParticleOrder {
+        &self.order
+    }
+
+    fn stored(&self, i: usize) -> usize {
+        self.order.stored(i as u32) as usize
+    }
+
+    /// The coordinates as three arrays in storage order, in the cloth's frame \[m\].
     pub fn points(&self) -> &Points {
         &self.position
     }
 
-    /// The coordinates a step before [`Self::points`], in the cloth's frame \[m\].
+    /// The coordinates a step before [`Self::points`], in storage order, in the cloth's frame \[m\].
     pub fn previous_points(&self) -> &Points {
         &self.step_position
     }
 
     /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
-    /// frame \[m\].
+    /// frame \[m\]. `i` is in storage order, as in
+    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex).
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -146,6 +199,11 @@ impl ClothParticles {
     /// # Panics
     /// When `i` is out of range.
     pub fn velocity(&self, i: usize) -> Vec3 {
+        self.stored_velocity(self.stored(i))
+    }
+
+    /// The velocity of a particle in storage order [m/s].
+    pub(crate) fn stored_velocity(&self, i: usize) -> Vec3 {
         if self.substep_seconds > 0.0 {
             let moved = self.position.get(i) - self.previous_position.get(i);
             (moved + self.lost_displacement.get(i)) / self.substep_seconds
@@ -159,28 +217,31 @@ impl ClothParticles {
     /// # Panics
     /// When `i` is out of range.
     pub fn mass(&self, i: usize) -> f32 {
-        self.mass[i]
+        self.mass[self.stored(i)]
     }
 
     /// Whether a particle is held by a pin.
     pub fn is_pinned(&self, i: usize) -> bool {
         self.pins
-            .binary_search_by_key(&(i as u32), |pin| pin.particle)
+            .binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
             .is_ok()
     }
 
     /// The pinned particles, in order.
     pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.pins.iter().map(|pin| pin.particle as usize)
+        let given = |pin: &Held| self.order.given(pin.particle) as usize;
+        self.pins.iter().map(given)
     }
 
     /// The particle that a grab holds.
     pub fn grabbed(&self) -> Option<usize> {
-        self.grabbed.map(|held| held.particle as usize)
+        let given = |held: Held| self.order.given(held.particle) as usize;
+        self.grabbed.map(given)
     }
 
     /// Gives every particle its share of the mass; pinned and grabbed ones become kinematic.
     pub(crate) fn set_masses(&mut self, areas: &[f32], areal_density: f32) {
+        self.areal_density = areal_density;
         for (mass, area) in self.mass.iter_mut().zip(areas) {
             *mass = areal_density * area;
         }
@@ -197,6 +258,24 @@ impl ClothParticles {
         }
     }
 
+    /// The accelerations of this step, one for each particle, to add to.
+    pub(crate) fn accelerations(&mut self) -> &mut Points {
+        let len = self.position.len();
+        if self.acceleration.len() != len {
+            self.acceleration.clear();
+            self.acceleration.resize(len, 0.0);
+        }
+        &mut self.acceleration
+    }
+
+    /// Kinematic particles that do not move have no velocity.
+    pub(crate) fn hold_still(&mut self) {
+        for held in self.pins.iter().chain(&self.grabbed) {
+            let i = held.particle as usize;
+            self.previous_position.set(i, self.position.get(i));
+        }
+    }
+
     /// Notes where the step starts.
     pub(crate) fn begin_step(&mut self) {
         self.step_position.copy_from(&self.position);
@@ -207,6 +286,6 @@ impl ClothParticles {
         self.position.copy_from(&self.step_position);
         self.previous_position.copy_from(&self.step_position);
         self.lost_displacement.fill(Vec3::ZERO);
-        self.acceleration.fill(Vec3::ZERO);
+        self.acceleration.clear();
     }
 }

@@ -246,8 +246,9 @@ impl PinSelection {
                     return Err(error);
                 }
                 let inside = |p: &Vec3| p.distance_squared(center) <= radius * radius;
+                let place = |i| topology.rest_positions[topology.order.stored(i) as usize];
                 (0..particles as u32)
-                    .filter(|&i| inside(&topology.rest_positions[i as usize]))
+                    .filter(|&i| inside(&place(i)))
                     .collect()
             }
         })
@@ -318,11 +319,11 @@ impl ClothParticles {
         let mut held: Vec<Held> = pins
             .iter()
             .map(|&(particle, target)| Held {
-                particle,
+                particle: self.order.stored(particle),
                 target: target.unwrap_or_else(|| {
                     let before = self
                         .pins
-                        .binary_search_by_key(&particle, |pin| pin.particle);
+                        .binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
                     before.map_or_else(
                         |_| self.position(particle as usize),
                         |at| self.pins[at].target,
@@ -331,7 +332,7 @@ impl ClothParticles {
             })
             .collect();
         // Stable, so that the last of several pins of a particle can be kept.
-        held.sort_by_key(|pin| pin.particle);
+        held.sort_by_key(|pin| self.order.given(pin.particle));
         held.reverse();
         held.dedup_by_key(|pin| pin.particle);
         held.reverse();

@@ -12,7 +12,9 @@ use bevy_transform::TransformSystems;
 use crate::{
     bounds::update_bounds,
     build::build_topology,
-    collider::{ClothColliders, collide_half_space, collide_sphere, snapshot_colliders},
+    collider::{
+        ClothColliders, collide_half_space, collide_sphere, find_contacts, snapshot_colliders,
+    },
     diagnostics::{ClothStepTime, start_clock, stop_clock},
     forces::apply_forces,
     frame::{advance_frames, prepare_frames},
@@ -22,7 +24,8 @@ use crate::{
     prelude::*,
     schedule::run_substeps,
     solver::{solve_constraints, verlet_step},
-    step::{begin_step, step_runs},
+    step::{begin_step, plan_substeps, step_runs},
+    tethers::build_tethers,
     validate::guard_finite,
     wind::apply_wind,
 };
@@ -77,6 +80,8 @@ impl Plugin for ClothPlugin {
                     prepare_frames,
                     build_topology,
                     apply_pins,
+                    build_tethers,
+                    plan_substeps,
                     (snapshot_colliders, apply_grab, apply_forces, apply_wind)
                         .chain()
                         .run_if(step_runs),
@@ -108,6 +113,7 @@ impl Plugin for ClothPlugin {
                 ClothSubstep,
                 (
                     ClothSubstepSystems::Integrate,
+                    ClothSubstepSystems::Approach,
                     ClothSubstepSystems::Solve,
                     ClothSubstepSystems::Collide,
                 )
@@ -119,6 +125,7 @@ impl Plugin for ClothPlugin {
                     (advance_frames, verlet_step)
                         .chain()
                         .in_set(ClothSubstepSystems::Integrate),
+                    find_contacts.in_set(ClothSubstepSystems::Approach),
                     solve_constraints.in_set(ClothSubstepSystems::Solve),
                     (collide_sphere, collide_half_space)
                         .chain()
@@ -136,6 +143,9 @@ fn register_types(app: &mut App) {
         .register_type::<ClothForces>()
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
+        .register_type::<ClothSolver>()
+        .register_type::<crate::tethers::ClothTethers>()
+        .register_type::<crate::settings::InstructionSet>()
         .register_type::<ClothTopology>()
         .register_type::<ClothFrame>()
         .register_type::<ClothParticles>()

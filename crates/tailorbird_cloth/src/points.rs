@@ -1,6 +1,11 @@
 //! Points as three parallel arrays.
 
 use bevy_math::Vec3;
+use fearless_simd::Level;
+
+use crate::solver::kernels::range::is_finite;
+
+use crate::memory::heap;
 
 /// Points (or vectors) stored as three arrays of equal length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +26,11 @@ impl Points {
             y: vec![0.0; len],
             z: vec![0.0; len],
         }
+    }
+
+    /// What they take on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.x) + heap(&self.y) + heap(&self.z)
     }
 
     /// The number of points.
@@ -78,6 +88,22 @@ impl Points {
         self.z.clone_from(&other.z);
     }
 
+    /// Removes all points and keeps the memory.
+    pub fn clear(&mut self) {
+        self.each(Vec::clear);
+    }
+
+    /// Makes it `len` points, with `value` as the coordinates of new ones.
+    pub fn resize(&mut self, len: usize, value: f32) {
+        self.each(|values| values.resize(len, value));
+    }
+
+    fn each(&mut self, f: impl FnMut(&mut Vec<f32>)) {
+        [&mut self.x, &mut self.y, &mut self.z]
+            .into_iter()
+            .for_each(f);
+    }
+
     /// Overwrites every point.
     pub fn fill(&mut self, value: Vec3) {
         self.x.fill(value.x);
@@ -86,12 +112,11 @@ impl Points {
     }
 
     /// Whether no coordinate is infinite or NaN.
-    ///
-    /// Adds up `0 · v`, which is zero for finite numbers alone: no branch per coordinate.
     pub fn is_finite(&self) -> bool {
+        let level = Level::new();
         [&self.x, &self.y, &self.z]
             .into_iter()
-            .all(|values| values.iter().fold(0.0, |sum, v| sum + v * 0.0) == 0.0)
+            .all(|values| is_finite(level, values))
     }
 }
 

@@ -34,7 +34,7 @@ impl ClothParticles {
         }
         let mut nearest: Option<(usize, Vec3, f32)> = None;
         for (triangle, corners) in topology.triangles.iter().enumerate() {
-            let corners = corners.map(|i| self.position(i as usize));
+            let corners = corners.map(|i| self.position.get(i as usize));
             if let Some((barycentric, distance)) = meet(ray, corners)
                 && nearest.is_none_or(|(.., d)| distance < d)
             {
@@ -43,17 +43,17 @@ impl ClothParticles {
         }
         let (triangle, barycentric, distance) = nearest?;
         let corners = topology.triangles[triangle];
-        let [a, b, c] = corners.map(|i| self.position(i as usize));
+        let [a, b, c] = corners.map(|i| self.position.get(i as usize));
         let point = ray.get_point(distance);
         let normal = (b - a).cross(c - a).normalize_or(-*ray.direction);
         let particle = corners.into_iter().map(|i| i as usize).min_by(|&i, &j| {
-            let distance = |i| self.position(i).distance_squared(point);
+            let distance = |i| self.position.get(i).distance_squared(point);
             distance(i).total_cmp(&distance(j))
         })?;
         Some(ClothHit {
             triangle,
             barycentric,
-            particle,
+            particle: self.order.given(particle as u32) as usize,
             point,
             normal: if normal.dot(*ray.direction) > 0.0 {
                 -normal
@@ -120,7 +120,7 @@ mod tests {
     fn a_ray_meets_the_front_triangle_from_both_sides() {
         let cloth = Cloth::grid(Vec2::ONE, UVec2::new(5, 5)).centered();
         let topology = Topology::build(&cloth.shape, Vec3::ONE).expect("valid");
-        let particles = ClothParticles::at_rest(&topology.rest_positions);
+        let particles = ClothParticles::at_rest(&topology);
         let bounds = ClothBounds {
             min: Vec3::new(-0.5, -0.5, 0.0),
             max: Vec3::new(0.5, 0.5, 0.0),

@@ -26,6 +26,8 @@ pub struct ClothSubstep;
 pub enum ClothSubstepSystems {
     /// Moves the cloths' frames, pins and particles.
     Integrate,
+    /// Pushes particles out of colliders and notes where they touch.
+    Approach,
     /// Holds the constraints.
     Solve,
     /// Keeps particles out of colliders.

@@ -3,6 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use fearless_simd::Level;
 
 use crate::error::ClothErrorKind;
 
@@ -13,23 +14,68 @@ pub struct ClothSettings {
     /// Acceleration of every particle [m/s²].
     pub gravity: Vec3,
     /// Into how many substeps of equal length a step is divided, at least 1. More substeps make cloth stiffer and its
-    /// motion finer, at proportional cost.
-    pub substeps: u32,
+    /// motion finer, at proportional cost. `None` is as many as the finest cloth needs: see
+    /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
+    pub substeps: Option<u32>,
     /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
     /// in few.
     pub iterations: u32,
+    /// The instructions that the kernels use. The result has the same bits with any.
+    pub instruction_set: InstructionSet,
     /// Stops the simulation. Cloths stay as they are.
     pub paused: bool,
     /// While paused: how many steps to do all the same. Counts down.
     pub pending_steps: u32,
 }
 
+/// The instructions that the kernels use. What the machine does not have is replaced by the best that it has below.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum InstructionSet {
+    /// The best of this machine.
+    #[default]
+    Auto,
+    /// One number at a time.
+    Scalar,
+    /// 4 numbers at a time; every x86-64 processor.
+    Sse2,
+    /// 8 numbers at a time; x86-64-v3.
+    Avx2,
+    /// 16 numbers at a time; from Ice Lake and Zen 4 on.
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The level of the vector library.
+    pub(crate) fn level(self) -> Level {
+        let best = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            let sse2 = || best.as_sse2().map(Level::Sse2);
+            let avx2 = || best.as_avx2().map(Level::Avx2);
+            match self {
+                Self::Scalar => Some(Level::fallback()),
+                Self::Sse2 => sse2(),
+                Self::Avx2 => avx2().or_else(sse2),
+                Self::Auto | Self::Avx512 => None,
+            }
+            .unwrap_or(best)
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        match self {
+            Self::Scalar => Level::fallback(),
+            _ => best,
+        }
+    }
+}
+
 impl Default for ClothSettings {
     fn default() -> Self {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
-            substeps: 16,
+            substeps: None,
             iterations: 1,
+            instruction_set: InstructionSet::Auto,
             paused: false,
             pending_steps: 0,
         }
@@ -52,7 +98,7 @@ impl ClothSettings {
             ClothErrorKind::vector("ClothSettings.gravity", self.gravity),
             ClothErrorKind::number(
                 "ClothSettings.substeps",
-                self.substeps as f32,
+                self.substeps.unwrap_or(1) as f32,
                 |v| (1.0..=most).contains(&v),
                 "1 to 1000",
             ),

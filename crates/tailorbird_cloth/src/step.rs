@@ -4,9 +4,13 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_time::Time;
+use fearless_simd::Level;
 use tracing::error;
 
-use crate::{cloth::Cloth, particles::ClothParticles, settings::ClothSettings};
+use crate::{
+    cloth::Cloth, particles::ClothParticles, settings::ClothSettings, solver::ClothSolver,
+    topology::ClothTopology,
+};
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
 ///
@@ -16,6 +20,7 @@ use crate::{cloth::Cloth, particles::ClothParticles, settings::ClothSettings};
 pub struct ClothStep {
     pub(crate) seconds: f32,
     pub(crate) substeps: u32,
+    pub(crate) fixed_substeps: Option<u32>,
     pub(crate) substep: u32,
     pub(crate) iterations: u32,
     pub(crate) gravity: Vec3,
@@ -23,6 +28,18 @@ pub struct ClothStep {
     pub(crate) steps: u64,
     pub(crate) running: bool,
     pub(crate) parallel: bool,
+    #[reflect(ignore)]
+    pub(crate) level: SimdLevel,
+}
+
+/// The instruction set that the kernels use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SimdLevel(pub Level);
+
+impl Default for SimdLevel {
+    fn default() -> Self {
+        Self(Level::new())
+    }
 }
 
 /// From this many particles on (over all cloths) cloths are shared out to threads.
@@ -86,6 +103,11 @@ impl ClothStep {
         self.running
     }
 
+    /// The instruction set that the kernels use.
+    pub(crate) fn level(&self) -> Level {
+        self.level.0
+    }
+
     /// Whether it pays to share the cloths out to threads.
     pub fn parallel(&self) -> bool {
         self.parallel
@@ -129,7 +151,8 @@ pub fn begin_step(
     }
     step.seconds = time.delta_secs();
     step.substep = 0;
-    step.substeps = valid.substeps;
+    step.fixed_substeps = valid.substeps;
+    step.level = SimdLevel(valid.instruction_set.level());
     step.iterations = valid.iterations;
     step.gravity = valid.gravity;
     step.running = step.seconds > 0.0 && (!settings.paused || single_step);
@@ -143,6 +166,19 @@ pub fn begin_step(
         cloth.begin_step();
     }
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
+}
+
+/// Chooses the number of substeps: the one that is set, or as many as the cloth needs that needs most.
+pub fn plan_substeps(
+    mut step: ResMut<ClothStep>,
+    cloths: Query<(&ClothSolver, &ClothTopology), With<Cloth>>,
+) {
+    step.substeps = step.fixed_substeps.unwrap_or_else(|| {
+        let needed = cloths
+            .iter()
+            .map(|(solver, topology)| solver.substeps(topology));
+        needed.max().unwrap_or(1)
+    });
 }
 
 /// Calls `f` for each item of a query, on several threads where [`ClothStep::parallel`] says that it pays.

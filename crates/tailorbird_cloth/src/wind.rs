@@ -197,6 +197,7 @@ pub fn apply_wind(
             return;
         }
         let wind = frame.vector_to_frame(velocity);
+        particles.accelerations();
         let ClothParticles {
             position,
             previous_position,

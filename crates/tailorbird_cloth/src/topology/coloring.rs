@@ -1,36 +1,50 @@
-//! Sorts pairs into batches that share no particle.
+//! Sorts pairs (or threes, or fours) of particles into batches that share no particle.
 
-/// Gives each pair the lowest colour that neither of its particles has yet, and returns the pairs by colour.
+/// Tuples of a block in [`color_in_blocks`]: their particles fit the first level of cache.
+const BLOCK: usize = 1536;
+
+/// Gives each tuple the lowest colour that none of its particles has yet, and returns the tuples by colour.
 ///
-/// Needs at most twice the largest number of pairs at a particle. Deterministic; keeps the order within a colour.
-pub fn color(pairs: &[[u32; 2]], particles: usize) -> Vec<Vec<[u32; 2]>> {
+/// Needs at most N times the largest number of tuples at a particle. Deterministic; keeps the order within a colour.
+pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<[u32; N]>> {
     let mut degree = vec![0usize; particles];
-    for &[a, b] in pairs {
-        degree[a as usize] += 1;
-        degree[b as usize] += 1;
+    for &particle in tuples.iter().flatten() {
+        degree[particle as usize] += 1;
     }
     // Enough words of bits at each particle for every colour that can come to meet it.
-    let words = degree.iter().max().map_or(0, |most| most * 2 / 64 + 1);
+    let words = degree.iter().max().map_or(0, |most| most * N / 64 + 1);
     let mut used = vec![0u64; particles * words];
-    let mut batches: Vec<Vec<[u32; 2]>> = Vec::new();
-    for &[a, b] in pairs {
-        let (a_bits, b_bits) = (a as usize * words, b as usize * words);
+    let mut batches: Vec<Vec<[u32; N]>> = Vec::new();
+    for &tuple in tuples {
+        let bits = tuple.map(|particle| particle as usize * words);
         let Some((word, free)) = (0..words)
-            .map(|w| (w, !(used[a_bits + w] | used[b_bits + w])))
+            .map(|w| (w, !bits.iter().fold(0, |taken, at| taken | used[at + w])))
             .find(|(_, free)| *free != 0)
         else {
             continue;
         };
         let bit = free.trailing_zeros() as usize;
-        used[a_bits + word] |= 1 << bit;
-        used[b_bits + word] |= 1 << bit;
+        for at in bits {
+            used[at + word] |= 1 << bit;
+        }
         let color = word * 64 + bit;
         if color >= batches.len() {
             batches.resize_with(color + 1, Vec::new);
         }
-        batches[color].push([a, b]);
+        batches[color].push(tuple);
     }
     batches
+}
+
+/// As [`color`], a block of tuples after the other, so that what is solved one after the other also lies close together. A batch
+/// has tuples of one block alone. Tuples are sorted first.
+pub fn color_in_blocks<const N: usize>(
+    tuples: &mut [[u32; N]],
+    particles: usize,
+) -> Vec<Vec<[u32; N]>> {
+    tuples.sort_unstable_by_key(|tuple| (tuple.iter().min().copied(), *tuple));
+    let blocks = tuples.chunks(BLOCK);
+    blocks.flat_map(|block| color(block, particles)).collect()
 }
 
 #[cfg(test)]

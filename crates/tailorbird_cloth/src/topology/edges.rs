@@ -5,13 +5,25 @@ use std::collections::HashSet;
 use bevy_math::Vec3;
 
 use super::{
-    Neighbors, Topology, constraints::ConstraintFamily, constraints::DistanceConstraints,
+    Neighbors, Topology,
+    chains::{Chains, inverse},
+    constraints::{ConstraintFamily, DistanceConstraints},
+    fabric::Fabric,
+    hinges::HingeConstraints,
+    lattice::Lattice,
+    mesh_edges::MeshEdges,
+    order::ParticleOrder,
+    recognize::Recognized,
+    weave::Weave,
     weld::weld,
 };
 use crate::error::ClothErrorKind;
 
 /// A triangle whose area is below this part of its longest edge squared counts as degenerate.
 const DEGENERATE: f32 = 1e-6;
+
+/// Particles that are this part of the square root of twice the area out of a plane still count as lying in it.
+const FLAT: f32 = 1e-4;
 
 /// How close the square of a triangle's longest edge must come to the sum of the other two squares (or exceed it) for
 /// that edge to be a diagonal. 1 is a right angle.
@@ -38,6 +50,7 @@ pub(super) fn build(
             triangles: 0,
         });
     }
+    arrange(&mut topology);
     let springs = springs(&topology.triangles, &topology.rest_positions);
     for (family, pairs) in ConstraintFamily::ALL.into_iter().zip(&springs) {
         topology
@@ -49,6 +62,69 @@ pub(super) fn build(
         edges_of(&topology.constraints),
     );
     Ok(topology)
+}
+
+/// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
+fn arrange(topology: &mut Topology) {
+    let edges = MeshEdges::new(topology.particles(), &topology.triangles);
+    topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
+    let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
+    if let Some(grid) = Recognized::detect(rest, triangles, &edges, None) {
+        topology.lattice = Some(Lattice {
+            columns: grid.columns as u32,
+            rows: grid.rows as u32,
+            spacing: grid.spacing,
+        });
+        reorder(topology, grid.order);
+    } else {
+        let mut weave = Weave::new(rest, triangles, &edges, None);
+        let (chains, order) = Chains::build(rest, &weave);
+        weave.renumber(&inverse(&order));
+        reorder(topology, order);
+        let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
+        topology.fabric = Some(Fabric::new(rest, triangles, chains, &weave));
+    }
+    if !(topology.flat && topology.lattice.is_some()) {
+        topology.hinges = HingeConstraints::new(&topology.triangles, &topology.rest_positions);
+    }
+}
+
+/// Stores the particle with the given number `order[i]` as `i`.
+fn reorder(topology: &mut Topology, order: Vec<u32>) {
+    let number = inverse(&order);
+    let rest = &topology.rest_positions;
+    topology.rest_positions = order.iter().map(|i| rest[*i as usize]).collect();
+    let named = topology.triangles.iter_mut().flatten();
+    for i in named.chain(&mut topology.particle_of_vertex) {
+        *i = number[*i as usize];
+    }
+    topology.order = ParticleOrder::new(order);
+}
+
+/// Whether all triangles lie in one plane and face one way.
+fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
+    let corners = |t: &[u32; 3]| t.map(|i| rest_positions[i as usize]);
+    let areas = triangles.iter().map(|t| {
+        let [a, b, c] = corners(t);
+        (b - a).cross(c - a)
+    });
+    let largest = |n: Vec3, m: Vec3| {
+        if m.length_squared() > n.length_squared() {
+            m
+        } else {
+            n
+        }
+    };
+    let normal = areas.clone().fold(Vec3::ZERO, largest).normalize_or_zero();
+    let heights = triangles
+        .iter()
+        .flatten()
+        .map(|i| rest_positions[*i as usize].dot(normal));
+    let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| {
+        (low.min(height), high.max(height))
+    });
+    let size = areas.clone().map(Vec3::length).sum::<f32>().sqrt();
+    high - low <= FLAT * size && areas.into_iter().all(|area| area.dot(normal) > 0.0)
 }
 
 fn edges_of(constraints: &DistanceConstraints) -> impl Iterator<Item = [u32; 2]> + Clone + '_ {

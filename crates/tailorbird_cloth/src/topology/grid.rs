@@ -1,8 +1,11 @@
 //! A grid: the classic springs to the neighbours at 1, √2, 2 and 2√2.
 
-use bevy_math::{UVec2, Vec3};
+use bevy_math::{UVec2, Vec2, Vec3};
 
-use super::{Neighbors, Topology, constraints::ConstraintFamily, constraints::DistanceConstraints};
+use super::{
+    Neighbors, Topology, constraints::ConstraintFamily, constraints::DistanceConstraints,
+    lattice::Lattice,
+};
 
 /// Builds the topology of a grid from its particles in row-major order. Areas and revision are left to the caller.
 pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
@@ -17,6 +20,15 @@ pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
     Topology {
         neighbors: Neighbors::new(particles, edges),
         grid: Some(resolution),
+        flat: true,
+        lattice: Some(Lattice {
+            columns,
+            rows,
+            spacing: Vec2::new(
+                rest_positions[0].distance(rest_positions[1]),
+                rest_positions[0].distance(rest_positions[columns as usize]),
+            ),
+        }),
         source_triangles: (0..triangles.len() as u32).collect(),
         particle_of_vertex: (0..particles as u32).collect(),
         rest_positions,

@@ -1,9 +1,20 @@
 //! What is computed once from the rest shape: particles, triangles, constraints. Immutable, shared.
 
+pub mod chains;
 pub mod coloring;
 pub mod constraints;
 pub mod edges;
+pub mod fabric;
+pub mod geodesic;
 pub mod grid;
+pub mod hinges;
+pub mod lattice;
+pub mod mesh_edges;
+pub mod order;
+pub mod recognize;
+#[cfg(test)]
+pub(crate) mod test_meshes;
+pub mod weave;
 pub mod weld;
 
 use std::{
@@ -18,8 +29,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
 
-use crate::{cloth::ClothShape, error::ClothErrorKind, validate::check_shape};
-use constraints::DistanceConstraints;
+use crate::{cloth::ClothShape, error::ClothErrorKind, memory::heap, validate::check_shape};
+use constraints::{ConstraintFamily, DistanceConstraints};
+use fabric::Fabric;
+use hinges::HingeConstraints;
+use lattice::Lattice;
+use order::ParticleOrder;
 
 /// The [`Topology`] of this cloth, shared. Written by [`build_topology`](crate::build::build_topology) alone; empty until then.
 #[derive(Component, Clone, Debug, Default, Reflect)]
@@ -34,16 +49,26 @@ impl Deref for ClothTopology {
     }
 }
 
-/// What is computed once from the rest shape.
+/// What is computed once from the rest shape. Particles are in storage order throughout.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     /// Different for each topology that was ever built; 0 is the empty one. What is derived from a topology is
     /// rebuilt when this changes.
     pub revision: u64,
+    /// The order in which the particles are stored.
+    pub order: ParticleOrder,
     /// Where the particles lie at rest, in the cloth's frame, scale included \[m\].
     pub rest_positions: Vec<Vec3>,
     /// Columns and rows, where the cloth is a grid.
     pub grid: Option<UVec2>,
+    /// Where the particles lie in columns and rows at equal spacing.
+    pub lattice: Option<Lattice>,
+    /// What holds it together where they do not.
+    pub fabric: Option<Fabric>,
+    /// What resists bending, but in a flat lattice.
+    pub hinges: HingeConstraints,
+    /// Whether the particles lie in one plane, nowhere on top of each other.
+    pub flat: bool,
     /// Particles at the corners of each triangle, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle which one of the source it is.
@@ -54,7 +79,7 @@ pub struct Topology {
     pub scale: Vec3,
     /// Area of each triangle at rest \[m²\].
     pub triangle_areas: Vec<f32>,
-    /// A third of the area of the triangles around each particle \[m²\].
+    /// A third of the area of the triangles around each particle, in a lattice a quarter of the cells around it \[m²\].
     pub areas: Vec<f32>,
     /// The springs, in batches that share no particle.
     pub constraints: DistanceConstraints,
@@ -145,6 +170,36 @@ impl Topology {
         self.rest_positions.len()
     }
 
+    /// What it takes on the heap, shared by all clones \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let constraints = &self.constraints;
+        heap(&self.rest_positions)
+            + heap(&self.triangles)
+            + heap(&self.source_triangles)
+            + heap(&self.particle_of_vertex)
+            + heap(&self.triangle_areas)
+            + heap(&self.areas)
+            + heap(&constraints.ends)
+            + heap(&constraints.rest_lengths)
+            + heap(&constraints.batches)
+            + heap(&self.neighbors.offsets)
+            + heap(&self.neighbors.particles)
+            + heap(&self.dropped)
+    }
+
+    /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.
+    pub fn stretch_edges(&self) -> Vec<([u32; 2], f32)> {
+        self.fabric.as_ref().map_or_else(
+            || self.constraints.family(ConstraintFamily::Stretch).collect(),
+            |fabric| fabric.chains().edges().collect(),
+        )
+    }
+
+    /// Mean area for each particle \[m²\].
+    pub fn cell_area(&self) -> f32 {
+        self.triangle_areas.iter().sum::<f32>() / self.particles().max(1) as f32
+    }
+
     fn measure_areas(&mut self) {
         self.areas = vec![0.0; self.particles()];
         for triangle in &self.triangles {
@@ -153,6 +208,15 @@ impl Topology {
             self.triangle_areas.push(area);
             for &i in triangle {
                 self.areas[i as usize] += area / 3.0;
+            }
+        }
+        // However its cells are cut.
+        if let Some(lattice) = self.lattice {
+            let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
+            let quarter = 0.25 * lattice.spacing.x * lattice.spacing.y;
+            let beside = |at: usize, len: usize| if at == 0 || at + 1 == len { 1.0 } else { 2.0 };
+            for (i, area) in self.areas.iter_mut().enumerate() {
+                *area = quarter * beside(i % columns, columns) * beside(i / columns, rows);
             }
         }
     }

@@ -64,6 +64,7 @@ impl ClothsItem<'_, '_> {
         if particles.is_empty() || particles.len() != self.topology.particles() {
             return None;
         }
+        let points = particles.points();
         let point = self.frame.to_frame(visible.position);
         let to_box = point.distance(point.clamp(self.bounds.min, self.bounds.max));
         if to_box > self.bounds.max.distance(self.bounds.min) {
@@ -76,23 +77,17 @@ impl ClothsItem<'_, '_> {
         let edge = self
             .topology
             .neighbors
-            .of(start as u32)
+            .of(particles.order().stored(start as u32))
             .iter()
-            .map(|&i| {
-                particles
-                    .position(i as usize)
-                    .distance(particles.position(start))
-            })
+            .map(|&i| points.get(i as usize).distance(particles.position(start)))
             .fold(0.0, f32::max);
         let reach = (distance + 2.0 * edge).powi(2);
         let (triangle, barycentric, distance) = triangles
             .iter()
             .enumerate()
-            .filter(|(_, [first, ..])| {
-                particles.position(*first as usize).distance_squared(point) <= reach
-            })
+            .filter(|(_, [first, ..])| points.get(*first as usize).distance_squared(point) <= reach)
             .map(|(triangle, corners)| {
-                let corners = corners.map(|i| particles.position(i as usize));
+                let corners = corners.map(|i| points.get(i as usize));
                 let barycentric = closest_on_triangle(point, corners);
                 (
                     triangle,
@@ -103,10 +98,11 @@ impl ClothsItem<'_, '_> {
             .min_by(|a, b| a.2.total_cmp(&b.2))?;
 
         let corners = triangles[triangle].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| particles.position(i));
+        let [a, b, c] = corners.map(|i| points.get(i));
         let edge = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
         let speed = corners
             .into_iter()
+            .map(|i| particles.order().given(i as u32) as usize)
             .map(|i| particles.velocity(i).length())
             .fold(0.0, f32::max);
         let located = Located {
@@ -140,21 +136,24 @@ impl Located {
         if indices.iter().any(|&i| i >= cloth.particles.len()) {
             return None;
         }
-        let [a, b, c] = indices.map(|i| cloth.particles.world_position(i, cloth.frame));
+        let [a, b, c] = indices.map(|i| cloth.frame.to_world(cloth.particles.points().get(i)));
         let position = weigh(self.barycentric, [a, b, c]);
         let normal = (b - a).cross(c - a).normalize_or(-*ray.direction);
         let extra = ClothPointerHit {
             triangle: self.triangle,
             barycentric: self.barycentric,
-            particle: indices.into_iter().min_by(|&i, &j| {
-                let distance = |i| {
-                    cloth
-                        .particles
-                        .world_position(i, cloth.frame)
-                        .distance_squared(position)
-                };
-                distance(i).total_cmp(&distance(j))
-            })?,
+            particle: indices
+                .into_iter()
+                .map(|i| cloth.particles.order().given(i as u32) as usize)
+                .min_by(|&i, &j| {
+                    let distance = |i| {
+                        cloth
+                            .particles
+                            .world_position(i, cloth.frame)
+                            .distance_squared(position)
+                    };
+                    distance(i).total_cmp(&distance(j))
+                })?,
         };
         let data = HitData::new_with_extra(
             camera,

@@ -1,6 +1,14 @@
 //! A particle against a surface: no penetration, Coulomb friction, no bounce.
+//!
+//! The chain solver looks for contacts twice in a substep. Before it solves, particles are pushed out and their contacts noted
+//! (normal and depth), without friction; the lines then move them along the surface alone. After it, what is left is
+//! pushed out, and friction acts with the depth of both times, as it is the whole push that presses the two together.
 
 use bevy_math::Vec3;
+use fearless_simd::{Simd, prelude::*};
+
+use super::lanes::{Factor, Shared, SharedPoints, V3, Window};
+use crate::points::Points;
 
 /// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
 #[derive(Clone, Copy, Debug)]
@@ -37,4 +45,160 @@ impl Path {
             to,
         }
     }
+}
+
+/// The contacts of a cloth's particles, noted before its constraints are solved.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contacts {
+    /// Unit normals, 0 without contact.
+    pub normal: Points,
+    /// How far a particle was pushed out \[m\].
+    pub depth: Vec<f32>,
+    /// Whether there are any.
+    pub any: bool,
+}
+
+impl Contacts {
+    /// Forgets all contacts of `len` particles.
+    pub fn reset(&mut self, len: usize) {
+        for values in [
+            &mut self.normal.x,
+            &mut self.normal.y,
+            &mut self.normal.z,
+            &mut self.depth,
+        ] {
+            values.clear();
+            values.resize(len, 0.0);
+        }
+        self.any = false;
+    }
+}
+
+/// When contacts are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    /// Before the constraints are solved: push out and note, without friction.
+    Approach,
+    /// After that, with friction.
+    Final,
+}
+
+/// The particles of a cloth against colliders.
+#[derive(Clone, Copy)]
+pub(crate) struct Touching<'a> {
+    pub position: SharedPoints<'a>,
+    pub previous: SharedPoints<'a>,
+    pub inv_mass: Shared<'a>,
+    /// Normals and depths; none where they are not noted.
+    pub contacts: Option<(SharedPoints<'a>, Shared<'a>)>,
+    pub phase: Phase,
+}
+
+/// What is known of the contacts of particles side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<S: Simd> {
+    normal: V3<S>,
+    depth: S::f32s,
+    phase: Phase,
+}
+
+impl Touching<'_> {
+    #[inline(always)]
+    pub fn known<S: Simd>(self, simd: S, window: Window) -> Known<S> {
+        match (self.contacts, self.phase) {
+            (Some((normal, depth)), Phase::Final) => Known {
+                normal: normal.load_at(simd, window, 0),
+                depth: depth.load_at(simd, window, 0),
+                phase: self.phase,
+            },
+            _ => Known {
+                normal: V3::splat(simd, Vec3::ZERO),
+                depth: S::f32s::splat(simd, 0.0),
+                phase: self.phase,
+            },
+        }
+    }
+
+    /// Stores the paths of those that touch, and notes contacts.
+    #[inline(always)]
+    pub fn store<S: Simd>(
+        self,
+        simd: S,
+        window: Window,
+        touching: S::mask32s,
+        [from, to]: [V3<S>; 2],
+        normal: V3<S>,
+        depth: S::f32s,
+    ) {
+        let before: V3<S> = self.previous.load_at(simd, window, 0);
+        self.previous
+            .store_at(simd, window, 0, from.select(touching, before));
+        let before: V3<S> = self.position.load_at(simd, window, 0);
+        self.position
+            .store_at(simd, window, 0, to.select(touching, before));
+        if let (Some((normals, depths)), Phase::Approach) = (self.contacts, self.phase) {
+            let before: V3<S> = normals.load_at(simd, window, 0);
+            normals.store_at(simd, window, 0, normal.select(touching, before));
+            let before = depths.load_at(simd, window, 0);
+            depths.store_at::<S>(simd, window, 0, touching.select(depth, before));
+        }
+    }
+}
+
+impl<S: Simd> Known<S> {
+    /// Which particles (relative to the centre of a sphere) were in contact with it, and are no further above it than they
+    /// were below.
+    #[inline(always)]
+    pub fn stays(self, simd: S, to: V3<S>, radius: S::f32s) -> S::mask32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let reach = radius + self.depth;
+        let same = to.dot(self.normal).simd_gt(radius * 0.7);
+        self.depth.simd_gt(zero) & same & to.dot(to).simd_lt(reach * reach)
+    }
+
+    /// Which particles were in contact with a surface of this normal, and are no further above it than they were below.
+    #[inline(always)]
+    pub fn along(self, simd: S, normal: V3<S>, height: S::f32s) -> S::mask32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let same = normal.dot(self.normal).simd_gt(S::f32s::splat(simd, 0.9));
+        self.depth.simd_gt(zero) & same & height.simd_lt(self.depth)
+    }
+
+    /// What [`Path::resolve`] does to one, side by side; friction in the final phase alone, with the depth that was noted
+    /// added.
+    #[inline(always)]
+    pub fn resolve(
+        self,
+        simd: S,
+        [from, to]: [V3<S>; 2],
+        normal: V3<S>,
+        depth: S::f32s,
+        friction: f32,
+        surface: V3<S>,
+    ) -> [V3<S>; 2] {
+        let zero = S::f32s::splat(simd, 0.0);
+        let one = S::f32s::splat(simd, 1.0);
+        let to = to + Factor(depth) * normal;
+        let moved = to - from;
+        let away = normal.dot(moved);
+        let from_out = from + Factor(away.max(zero)) * normal;
+        if self.phase == Phase::Approach {
+            return [from_out, to];
+        }
+        let same = normal.dot(self.normal).simd_gt(S::f32s::splat(simd, 0.7));
+        let most = (depth + same.select(self.depth, zero)) * friction;
+        let sliding = moved - Factor(away) * normal - surface;
+        let length = sliding.dot(sliding).sqrt();
+        let kept = length.simd_gt(most).select(most / length, one);
+        [from_out, to - Factor(kept) * sliding]
+    }
+}
+
+/// The directions of vectors; up where they have none.
+#[inline(always)]
+pub(crate) fn unit_or_up<S: Simd>(simd: S, v: V3<S>) -> V3<S> {
+    let q = v.dot(v);
+    let any = q.simd_gt(S::f32s::splat(simd, 1e-30));
+    let unit = Factor(S::f32s::splat(simd, 1.0) / q.sqrt()) * v;
+    unit.select(any, V3::splat(simd, Vec3::Y))
 }

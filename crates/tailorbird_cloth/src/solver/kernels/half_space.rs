@@ -1,8 +1,14 @@
 //! Particles against a moving half-space: everything below a plane is solid.
 
-use bevy_math::Vec3;
+use std::ops::Range;
 
-use super::contact::Path;
+use bevy_math::Vec3;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+
+use super::{
+    contact::{Path, Touching},
+    lanes::{V3, each_window},
+};
 use crate::points::Points;
 
 /// A half-space during one substep, in the frame of the particles.
@@ -20,20 +26,58 @@ pub struct MovingHalfSpace {
     pub friction: f32,
 }
 
-/// Keeps all free particles (`inv_mass` > 0) out of a half-space; returns how many touch it.
-pub fn collide_all(
+/// Keeps all free particles (`inv_mass` > 0) out of a half-space. Returns whether any touches.
+pub(crate) fn collide_all(
+    level: Level,
     plane: &MovingHalfSpace,
-    inv_mass: &[f32],
-    position: &mut Points,
-    previous: &mut Points,
-) -> usize {
-    let mut contacts = 0;
-    for (i, w) in inv_mass.iter().enumerate() {
-        if *w > 0.0 {
-            contacts += usize::from(collide_one(plane, i, position, previous));
-        }
-    }
-    contacts
+    particles: Touching,
+    range: Range<usize>,
+) -> bool {
+    dispatch!(level, simd => collide_all_with(simd, plane, particles, range))
+}
+
+#[inline(always)]
+fn collide_all_with<S: Simd>(
+    simd: S,
+    plane: &MovingHalfSpace,
+    particles: Touching,
+    range: Range<usize>,
+) -> bool {
+    let zero = S::f32s::splat(simd, 0.0);
+    let margin = S::f32s::splat(simd, plane.margin);
+    let normal = V3::splat(simd, plane.normal);
+    let (from, to) = (V3::splat(simd, plane.from), V3::splat(simd, plane.to));
+    let mut any = false;
+    each_window(
+        simd,
+        range.clone(),
+        #[inline(always)]
+        |window| {
+            let end: V3<S> = particles.position.load_at(simd, window, 0) - to;
+            let height = normal.dot(end);
+            let contacts = particles.known(simd, window);
+            let free = particles.inv_mass.load_at(simd, window, 0).simd_gt(zero);
+            let touching =
+                free & (height.simd_lt(margin) | contacts.along(simd, normal, height - margin));
+            if touching.any_true() {
+                any = true;
+                let start = particles.previous.load_at(simd, window, 0) - from;
+                let depth = (margin - height).max(zero);
+                let surface = V3::splat(simd, Vec3::ZERO);
+                let path =
+                    contacts.resolve(simd, [start, end], normal, depth, plane.friction, surface);
+                particles.store(
+                    simd,
+                    window,
+                    touching,
+                    [path[0] + from, path[1] + to],
+                    normal,
+                    depth,
+                );
+            }
+        },
+    );
+    any
 }
 
 /// Keeps one particle out of a half-space; returns whether it touches.

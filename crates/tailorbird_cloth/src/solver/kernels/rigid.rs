@@ -26,15 +26,6 @@ pub fn change_frame(
     }
 }
 
-/// The same for a frame that stands still.
-pub fn keep_frame(inv_mass: &[f32], position: &Points, previous: &mut Points) {
-    for (i, w) in inv_mass.iter().enumerate() {
-        if *w == 0.0 {
-            previous.set(i, position.get(i));
-        }
-    }
-}
-
 /// Turns vectors.
 pub fn rotate(rotation: Mat3, vectors: &mut Points) {
     for i in 0..vectors.len() {

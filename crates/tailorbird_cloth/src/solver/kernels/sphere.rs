@@ -1,8 +1,14 @@
 //! Particles against a moving sphere.
 
-use bevy_math::Vec3;
+use std::ops::Range;
 
-use super::contact::Path;
+use bevy_math::Vec3;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+
+use super::{
+    contact::{Path, Touching, unit_or_up},
+    lanes::{Factor, V3, each_window},
+};
 use crate::points::Points;
 
 /// How far inside a particle on the surface may seem to be, as a part of the radius squared.
@@ -61,20 +67,77 @@ impl MovingSphere {
     }
 }
 
-/// Keeps all free particles (`inv_mass` > 0) out of a sphere; returns how many touch it.
-pub fn collide_all(
+/// Keeps all free particles (`inv_mass` > 0) out of a sphere; what [`MovingSphere::collide`] does to one, side by side. Returns whether any
+/// touches.
+pub(crate) fn collide_all(
+    level: Level,
     sphere: &MovingSphere,
-    inv_mass: &[f32],
-    position: &mut Points,
-    previous: &mut Points,
-) -> usize {
-    let mut contacts = 0;
-    for (i, w) in inv_mass.iter().enumerate() {
-        if *w > 0.0 {
-            contacts += usize::from(collide_one(sphere, i, position, previous));
-        }
-    }
-    contacts
+    particles: Touching,
+    range: Range<usize>,
+) -> bool {
+    dispatch!(level, simd => collide_all_with(simd, sphere, particles, range))
+}
+
+#[inline(always)]
+fn collide_all_with<S: Simd>(
+    simd: S,
+    sphere: &MovingSphere,
+    particles: Touching,
+    range: Range<usize>,
+) -> bool {
+    let zero = S::f32s::splat(simd, 0.0);
+    let one = S::f32s::splat(simd, 1.0);
+    let radius = S::f32s::splat(simd, sphere.radius);
+    let r2 = radius * radius;
+    let surely_inside = r2 * (1.0 - ROUNDING);
+    let (center_from, center_to) = (V3::splat(simd, sphere.from), V3::splat(simd, sphere.to));
+    let mut any = false;
+    each_window(
+        simd,
+        range.clone(),
+        #[inline(always)]
+        |window| {
+            let free = particles.inv_mass.load_at(simd, window, 0).simd_gt(zero);
+            let start = particles.previous.load_at(simd, window, 0) - center_from;
+            let mut end: V3<S> = particles.position.load_at(simd, window, 0) - center_to;
+            let travel = end - start;
+            let (t2, start2) = (travel.dot(travel), start.dot(start));
+            let approach = start.dot(travel);
+            let inside = end.dot(end).simd_lt(r2);
+            let ahead = approach.simd_lt(zero);
+            let through = ahead
+                & (zero - approach).simd_lt(t2)
+                & (start2 * t2 - approach * approach).simd_lt(r2 * t2);
+            let swept = start2.simd_ge(surely_inside) & ahead & (inside | through);
+            let contacts = particles.known(simd, window);
+            let touching = free & (swept | inside | contacts.stays(simd, end, radius));
+            if touching.any_true() {
+                any = true;
+                let root = (approach * approach - t2 * (start2 - r2)).max(zero).sqrt();
+                let time = swept.select(((zero - approach - root) / t2).max(zero), zero);
+                let hit = start + Factor(time) * travel;
+                let normal = unit_or_up(simd, hit.select(swept, end));
+                let beyond = end - hit;
+                let sliding = beyond - Factor(normal.dot(beyond)) * normal;
+                let length = sliding.dot(sliding).sqrt();
+                let cut = length.simd_gt(radius).select(radius / length - one, zero);
+                end = end + Factor(swept.select(cut, zero)) * sliding;
+                let depth = (radius - normal.dot(end)).max(zero);
+                let surface = Factor(radius) * V3::splat(simd, sphere.rotation).cross(normal);
+                let path =
+                    contacts.resolve(simd, [start, end], normal, depth, sphere.friction, surface);
+                particles.store(
+                    simd,
+                    window,
+                    touching,
+                    [path[0] + center_from, path[1] + center_to],
+                    normal,
+                    depth,
+                );
+            }
+        },
+    );
+    any
 }
 
 /// Keeps one particle out of a sphere; returns whether it touches.

@@ -5,7 +5,9 @@
 //! kept and given to the next one (as Kahan does for sums).
 
 use bevy_math::Vec3;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
+use super::lanes::{Reading, Shared, each_window};
 use crate::points::Points;
 
 /// One substep for all particles.
@@ -36,59 +38,75 @@ impl Verlet {
     /// Moves free particles (`inv_mass` > 0) from `previous` over `position` to the new position, which replaces
     /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
-    /// `acceleration` comes in addition to gravity [m/s²]. `lost` is what rounding took from the displacement of each
-    /// particle in the substep before \[m\], and is replaced by what it takes in this one.
+    /// `acceleration` comes in addition to gravity [m/s²]; none is 0. `lost` is what rounding took from the displacement of
+    /// each particle in the substep before \[m\], and is replaced by what it takes in this one.
     pub fn step(
         &self,
+        level: Level,
         position: &mut Points,
         previous: &mut Points,
         lost: &mut Points,
-        acceleration: &Points,
+        acceleration: Option<&Points>,
         inv_mass: &[f32],
     ) {
-        let kept = self.kept();
-        let h2 = self.seconds * self.seconds;
+        let (kept, h2) = (self.kept(), self.seconds * self.seconds);
+        let gravity = self.gravity * h2;
         let axes = [
-            (
-                &mut position.x,
-                &mut previous.x,
-                &mut lost.x,
-                &acceleration.x,
-                self.gravity.x,
-            ),
-            (
-                &mut position.y,
-                &mut previous.y,
-                &mut lost.y,
-                &acceleration.y,
-                self.gravity.y,
-            ),
-            (
-                &mut position.z,
-                &mut previous.z,
-                &mut lost.z,
-                &acceleration.z,
-                self.gravity.z,
-            ),
+            (&mut position.x, &mut previous.x, &mut lost.x, gravity.x),
+            (&mut position.y, &mut previous.y, &mut lost.y, gravity.y),
+            (&mut position.z, &mut previous.z, &mut lost.z, gravity.z),
         ];
-        for (position, previous, lost, acceleration, gravity) in axes {
-            for ((((x, x_before), lost), a), w) in position
-                .iter_mut()
-                .zip(previous)
-                .zip(lost)
-                .zip(acceleration)
-                .zip(inv_mass)
-            {
-                let now = *x;
-                let displacement = (now - *x_before + *lost) * kept + (gravity + a) * h2;
-                let free = *w > 0.0;
-                let displacement = if free { displacement } else { 0.0 };
-                *x = now + displacement;
-                *lost = displacement - (*x - now);
-                *x_before = if free { now } else { *x_before };
-            }
+        for (axis, (position, previous, lost, fall)) in axes.into_iter().enumerate() {
+            let acceleration = acceleration.map(|a| Reading([&a.x, &a.y, &a.z][axis]));
+            let axis = Axis {
+                position: Shared::new(position),
+                previous: Shared::new(previous),
+                lost: Shared::new(lost),
+                acceleration,
+                inv_mass: Reading(inv_mass),
+            };
+            dispatch!(level, simd => step_axis(simd, axis, kept, fall, h2));
         }
     }
+}
+
+/// One coordinate of all particles.
+#[derive(Clone, Copy)]
+struct Axis<'a> {
+    position: Shared<'a>,
+    previous: Shared<'a>,
+    lost: Shared<'a>,
+    acceleration: Option<Reading<'a>>,
+    inv_mass: Reading<'a>,
+}
+
+#[inline(always)]
+fn step_axis<S: Simd>(simd: S, axis: Axis, kept: f32, fall: f32, h2: f32) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let fall = S::f32s::splat(simd, fall);
+    let all = 0..axis.inv_mass.0.len();
+    each_window(
+        simd,
+        all.clone(),
+        #[inline(always)]
+        |window| {
+            let now = axis.position.load_at(simd, window, 0);
+            let before = axis.previous.load_at(simd, window, 0);
+            let lost = axis.lost.load_at(simd, window, 0);
+            let mut displacement = (now - before + lost) * kept + fall;
+            if let Some(acceleration) = axis.acceleration {
+                displacement += acceleration.load_at(simd, window) * h2;
+            }
+            let free = axis.inv_mass.load_at(simd, window).simd_gt(zero);
+            let displacement = free.select(displacement, zero);
+            let next = now + displacement;
+            axis.position.store_at(simd, window, 0, next);
+            axis.lost
+                .store_at(simd, window, 0, displacement - (next - now));
+            axis.previous
+                .store_at(simd, window, 0, free.select(now, before));
+        },
+    );
 }
 
 #[cfg(test)]
@@ -124,10 +142,11 @@ mod tests {
         };
         let mut lost = Points::zeroed(1);
         verlet.step(
+            Level::new(),
             &mut position,
             &mut previous,
             &mut lost,
-            &Points::zeroed(1),
+            None,
             &[1.0],
         );
         assert_eq!(position.get(0), Vec3::X * 1.25);
@@ -148,10 +167,11 @@ mod tests {
             let steps = 2 * substeps;
             for _ in 0..steps {
                 verlet.step(
+                    Level::new(),
                     &mut position,
                     &mut previous,
                     &mut lost,
-                    &Points::zeroed(1),
+                    None,
                     &[1.0],
                 );
             }

@@ -1,0 +1,163 @@
+//! Bending: the vector constraint D = Σ Kᵢ xᵢ = 0 over the four particles of a hinge, by extended position-based dynamics
+//! (Macklin et al. 2016), with the coefficients of [`HingeConstraints`](crate::topology::hinges::HingeConstraints).
+//!
+//! K is constant and the same for each axis, so that a pass over hinges that are flat at rest is linear:
+//! Δλ = −C/d, Δxᵢ = wᵢ Kᵢ Δλ with C = D and no square root. Hinges that are folded at rest keep the length of D:
+//! C = D − L u, where u is the unit vector along D, turned to the side to which the hinge is folded at rest.
+//!
+//! Since Σ Kᵢ = 0, momentum is kept; since Σ xᵢ × Kᵢ Δλ = D × Δλ and Δλ points along D, so is angular momentum (all but what the
+//! viscosity takes, which is of second order in the motion of a step).
+//!
+//! # Viscosity
+//! C + γ (D(x) − D(x⁻)) in place of C, with x⁻ the positions at the start of the substep, resists changes of the bending.
+//! The change that the correction itself makes is part of it, hence W = (1 + γ) Σ wᵢ Kᵢ² below.
+//!
+//! # The denominator
+//! With one pass per substep and multipliers that start at 0, XPBD divides by d = W + α̃, α̃ = α/h². That is right for a hinge
+//! alone; in a sheet it makes hinges too soft, all the more the finer the mesh. At rest a pass must move each particle back to
+//! where the substep began. What a hinge finds then is not what remains at the end of the pass, D*, but D* less what it and
+//! all hinges after it are going to do. Inside a sheet the bending moment varies slowly and moments of neighbours
+//! cancel: what all the others do to D is −W λ. Half of them come later, so that a hinge finds D* − W λ + ½ W λ and pushes
+//! by λ = −(D* − ½ W λ)/d, which is the −D*/α̃ of a spring of the given compliance where **d = α̃ + W/2**.
+//! (d = α̃ would be right if all saw D*, and is too stiff by as much as W + α̃ is too soft.)
+//!
+//! d is at least W, as what is below over-relaxes and gains energy. So a sheet settles at the deflection that its
+//! rigidity says as long as α̃ ≥ W/2, and is softer than asked where it is stiffer than one pass can make it: then more
+//! substeps are needed. Solve batches in the same order in each substep; turning it round makes stiff hinges swing.
+
+use bevy_math::Vec3;
+
+use crate::points::Points;
+
+/// A D shorter than this part of its rest length has no direction.
+const SHORTEST: f32 = 1e-6;
+
+/// Denominators below this [1/kg] count as this, so that a hinge of four held particles divides by something.
+const HEAVIEST: f32 = 1e-20;
+
+/// One pass over hinges that share no particle.
+#[derive(Clone, Copy, Debug)]
+pub struct HingePass {
+    /// 1/B, B the bending rigidity [1/(N m)]. 0 is rigid.
+    pub bend_compliance: f32,
+    /// Length of the substep, h \[s\].
+    pub seconds: f32,
+    /// γ, how strongly changes of the bending in a substep are resisted [-].
+    pub damping: f32,
+}
+
+/// A batch of hinges, as parallel slices.
+#[derive(Clone, Copy, Debug)]
+pub struct Hinges<'a> {
+    /// The particles of each.
+    pub particles: &'a [[u32; 4]],
+    /// Kᵢ [-].
+    pub coefficients: &'a [[f32; 4]],
+    /// 1/g \[m²\]: the compliance of a hinge is bend compliance × area.
+    pub areas: &'a [f32],
+}
+
+impl HingePass {
+    /// Bends hinges that are flat at rest. `previous` are the positions at the start of the substep \[m\].
+    ///
+    /// # Panics
+    /// When a particle is not below the number of particles.
+    pub fn solve_flat(
+        &self,
+        hinges: Hinges,
+        inv_mass: &[f32],
+        previous: &Points,
+        position: &mut Points,
+    ) {
+        self.pass(hinges, inv_mass, previous, position, |_, _, d| d);
+    }
+
+    /// Bends hinges of any rest shape. `rest_lengths` \[m\] are those of D with the sign of D · (x₁ − x₀) × (x₃ − x₂) at
+    /// rest; `previous` are the positions at the start of the substep \[m\].
+    ///
+    /// # Panics
+    /// When a particle is not below the number of particles.
+    pub fn solve_curved(
+        &self,
+        hinges: Hinges,
+        rest_lengths: &[f32],
+        inv_mass: &[f32],
+        previous: &Points,
+        position: &mut Points,
+    ) {
+        self.pass(hinges, inv_mass, previous, position, |k, corners, d| {
+            away_from_rest(corners, d, rest_lengths[k])
+        });
+    }
+
+    /// One pass; `constraint` says C of hinge k from its corners and D.
+    #[inline(always)]
+    fn pass(
+        &self,
+        hinges: Hinges,
+        inv_mass: &[f32],
+        previous: &Points,
+        position: &mut Points,
+        constraint: impl Fn(usize, [Vec3; 4], Vec3) -> Vec3,
+    ) {
+        let compliance = self.bend_compliance / (self.seconds * self.seconds);
+        let gamma = self.damping;
+        let hinges = hinges
+            .particles
+            .iter()
+            .zip(hinges.coefficients)
+            .zip(hinges.areas);
+        for (number, ((particles, k), area)) in hinges.enumerate() {
+            let particles = particles.map(|i| i as usize);
+            let corners = particles.map(|i| position.get(i));
+            let w = particles.map(|i| inv_mass[i]);
+
+            let d = bending(k, corners);
+            let c = constraint(number, corners, d);
+            let change = if gamma > 0.0 {
+                d - bending(k, particles.map(|i| previous.get(i)))
+            } else {
+                Vec3::ZERO
+            };
+
+            let own =
+                w[0] * k[0] * k[0] + w[1] * k[1] * k[1] + w[2] * k[2] * k[2] + w[3] * k[3] * k[3];
+            let own = at_least(HEAVIEST, own * (1.0 + gamma));
+            let denominator = at_least(own, compliance * area + 0.5 * own);
+            let delta = (c + change * gamma) * (-1.0 / denominator);
+            for i in 0..4 {
+                position.add(particles[i], delta * (w[i] * k[i]));
+            }
+        }
+    }
+}
+
+/// D. Differences first: it must not depend on how far from the origin the cloth is.
+#[inline(always)]
+fn bending(k: &[f32; 4], [x0, x1, x2, x3]: [Vec3; 4]) -> Vec3 {
+    (x1 - x0) * k[1] + (x2 - x0) * k[2] + (x3 - x0) * k[3]
+}
+
+/// C of a hinge that is folded at rest. Without a direction of its own, D gets that of the normal.
+#[inline(always)]
+fn away_from_rest([x0, x1, x2, x3]: [Vec3; 4], d: Vec3, rest_length: f32) -> Vec3 {
+    let normal = (x1 - x0).cross(x3 - x2);
+    let squared = d.length_squared();
+    let shortest = SHORTEST * rest_length;
+    if squared > shortest * shortest {
+        let toward_normal = if d.dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        d - d * (toward_normal * rest_length / squared.sqrt())
+    } else {
+        d - normal.normalize_or_zero() * rest_length
+    }
+}
+
+/// The larger one, as one instruction.
+#[inline(always)]
+fn at_least(least: f32, value: f32) -> f32 {
+    if value > least { value } else { least }
+}
+
+#[cfg(test)]
+#[path = "hinge_tests.rs"]
+mod tests;

@@ -1,0 +1,390 @@
+//! Numbers side by side: what the vector kernels share.
+//!
+//! A kernel is written once, for a vector of [`Simd::f32s`] whose width the instruction set decides. Each lane is a chain, a
+//! constraint or a particle of its own and takes the same IEEE operations in the same order whatever the width, so that
+//! every instruction set gives the same bits.
+
+#![expect(
+    unsafe_code,
+    reason = "several tasks write parts of one array that are no slices, such as columns"
+)]
+
+use std::{
+    cell::RefCell,
+    marker::PhantomData,
+    ops::{Add, Mul, Range, Sub},
+    slice,
+};
+
+use fearless_simd::{Simd, prelude::*};
+
+use crate::points::Points;
+
+/// The widest vector of all instruction sets.
+pub const WIDEST: usize = 16;
+
+/// An array that several tasks read and write, each its own elements.
+///
+/// Indices are checked in builds with debug assertions, as those of the tests; the kernels check the size of the whole once
+/// ([`super::lattice::Sheet::check`]). Checking each of the 14 accesses of a vector of springs took as long as the
+/// springs themselves.
+#[derive(Clone, Copy)]
+pub(crate) struct Shared<'a> {
+    start: *mut f32,
+    len: usize,
+    array: PhantomData<&'a mut [f32]>,
+}
+
+// SAFETY: in each phase of the solver a task touches elements of its own alone (its rows, or its columns, or what its
+// constraints name, of which no two share one); the phases are separated by the end of a task scope.
+unsafe impl Send for Shared<'_> {}
+// SAFETY: as above.
+unsafe impl Sync for Shared<'_> {}
+
+impl<'a> Shared<'a> {
+    #[inline(always)]
+    pub fn new(array: &'a mut [f32]) -> Self {
+        Self {
+            start: array.as_mut_ptr(),
+            len: array.len(),
+            array: PhantomData,
+        }
+    }
+
+    #[inline(always)]
+    pub fn len(self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(self, simd: S, i: usize) -> S::f32s {
+        debug_assert!(i + S::f32s::LEN <= self.len, "lanes out of range");
+        // SAFETY: in range, and no other task writes these elements now.
+        let values = unsafe { slice::from_raw_parts(self.start.add(i), S::f32s::LEN) };
+        S::f32s::from_slice(simd, values)
+    }
+
+    #[inline(always)]
+    pub fn store<S: Simd>(self, i: usize, value: S::f32s) {
+        debug_assert!(i + S::f32s::LEN <= self.len, "lanes out of range");
+        // SAFETY: in range, and no other task uses these elements now.
+        let values = unsafe { slice::from_raw_parts_mut(self.start.add(i), S::f32s::LEN) };
+        value.store_slice(values);
+    }
+
+    #[inline(always)]
+    pub fn get(self, i: usize) -> f32 {
+        debug_assert!(i < self.len, "index out of range");
+        // SAFETY: in range, and no other task writes this element now.
+        unsafe { self.start.add(i).read() }
+    }
+
+    #[inline(always)]
+    pub fn set(self, i: usize, value: f32) {
+        debug_assert!(i < self.len, "index out of range");
+        // SAFETY: in range, and no other task uses this element now.
+        unsafe { self.start.add(i).write(value) }
+    }
+
+    /// The elements of a window, `offset` further on. Lanes beyond a short window are 0.
+    #[inline(always)]
+    pub fn load_at<S: Simd>(self, simd: S, window: Window, offset: usize) -> S::f32s {
+        let i = window.at + offset;
+        if window.short == 0 {
+            return self.load(simd, i);
+        }
+        let mut lanes = [0.0; WIDEST];
+        for (k, lane) in lanes[..window.short].iter_mut().enumerate() {
+            *lane = self.get(i + k);
+        }
+        S::f32s::from_slice(simd, &lanes[..S::f32s::LEN])
+    }
+
+    /// Stores the lanes that belong to the window, `offset` further on.
+    #[inline(always)]
+    pub fn store_at<S: Simd>(self, simd: S, window: Window, offset: usize, value: S::f32s) {
+        let i = window.at + offset;
+        if window.short != 0 {
+            for (k, lane) in value.as_slice()[..window.short].iter().enumerate() {
+                self.set(i + k, *lane);
+            }
+        } else if window.done != 0 {
+            let value = window.todo(simd).select(value, self.load(simd, i));
+            self.store::<S>(i, value);
+        } else {
+            self.store::<S>(i, value);
+        }
+    }
+}
+
+/// An array that tasks read.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading<'a>(pub &'a [f32]);
+
+impl Reading<'_> {
+    /// The elements of a window. Lanes beyond a short window are 0.
+    #[inline(always)]
+    pub fn load_at<S: Simd>(self, simd: S, window: Window) -> S::f32s {
+        if window.short == 0 {
+            return S::f32s::from_slice(simd, &self.0[window.at..][..S::f32s::LEN]);
+        }
+        let mut lanes = [0.0; WIDEST];
+        lanes[..window.short].copy_from_slice(&self.0[window.at..window.at + window.short]);
+        S::f32s::from_slice(simd, &lanes[..S::f32s::LEN])
+    }
+}
+
+/// The elements that a vector stands for: as many as it has lanes, without gaps, in ranges of any length.
+///
+/// The last window of a range lies at its end and so overlaps the one before; what that one did already is left alone.
+/// Only a range that is shorter than a vector has a short window, which is loaded one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Window {
+    /// The first element.
+    pub at: usize,
+    /// How many of the first lanes are done.
+    done: usize,
+    /// How many lanes there are, if not all.
+    short: usize,
+}
+
+impl Window {
+    /// The first `count` elements, less than a vector.
+    #[inline(always)]
+    pub fn short(count: usize) -> Self {
+        Self {
+            at: 0,
+            done: 0,
+            short: count,
+        }
+    }
+
+    /// The last elements of a range, of which `left` are still to be done: less than a vector.
+    #[inline(always)]
+    fn last<S: Simd>(_simd: S, range: &Range<usize>, left: usize) -> Self {
+        let lanes = S::f32s::LEN;
+        if range.end - range.start >= lanes {
+            Self {
+                at: range.end - lanes,
+                done: lanes - left,
+                short: 0,
+            }
+        } else {
+            Self {
+                at: range.start,
+                done: 0,
+                short: left,
+            }
+        }
+    }
+
+    /// The lanes that are still to be done.
+    #[inline(always)]
+    pub fn todo<S: Simd>(self, simd: S) -> S::mask32s {
+        S::f32s::from_slice(simd, &LANE_NUMBERS[..S::f32s::LEN])
+            .simd_ge(S::f32s::splat(simd, self.done as f32))
+    }
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Calls `f` with scratch of at least `len` numbers, which is kept for the next call on this thread.
+pub(crate) fn with_scratch<R>(len: usize, f: impl FnOnce(&mut [f32]) -> R) -> R {
+    SCRATCH.with(|scratch| {
+        let mut own = Vec::new();
+        let mut kept = scratch.try_borrow_mut();
+        let scratch = kept.as_deref_mut().unwrap_or(&mut own);
+        if scratch.len() < len {
+            scratch.resize(len, 0.0);
+        }
+        f(&mut scratch[..len])
+    })
+}
+
+/// Calls `f` for the windows of a range.
+#[inline(always)]
+pub(crate) fn each_window<S: Simd>(simd: S, range: Range<usize>, mut f: impl FnMut(Window)) {
+    let lanes = S::f32s::LEN;
+    let mut at = range.start;
+    while at + lanes <= range.end {
+        f(Window {
+            at,
+            done: 0,
+            short: 0,
+        });
+        at += lanes;
+    }
+    if at < range.end {
+        f(Window::last(simd, &range, range.end - at));
+    }
+}
+
+const LANE_NUMBERS: [f32; WIDEST] = [
+    0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0,
+];
+
+/// [`Points`] that several tasks read and write.
+#[derive(Clone, Copy)]
+pub(crate) struct SharedPoints<'a> {
+    pub x: Shared<'a>,
+    pub y: Shared<'a>,
+    pub z: Shared<'a>,
+}
+
+impl<'a> SharedPoints<'a> {
+    #[inline(always)]
+    pub fn new(points: &'a mut Points) -> Self {
+        Self {
+            x: Shared::new(&mut points.x),
+            y: Shared::new(&mut points.y),
+            z: Shared::new(&mut points.z),
+        }
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(self, simd: S, i: usize) -> V3<S> {
+        V3 {
+            x: self.x.load(simd, i),
+            y: self.y.load(simd, i),
+            z: self.z.load(simd, i),
+        }
+    }
+
+    #[inline(always)]
+    pub fn store<S: Simd>(self, i: usize, value: V3<S>) {
+        self.x.store::<S>(i, value.x);
+        self.y.store::<S>(i, value.y);
+        self.z.store::<S>(i, value.z);
+    }
+
+    #[inline(always)]
+    pub fn load_at<S: Simd>(self, simd: S, window: Window, offset: usize) -> V3<S> {
+        V3 {
+            x: self.x.load_at(simd, window, offset),
+            y: self.y.load_at(simd, window, offset),
+            z: self.z.load_at(simd, window, offset),
+        }
+    }
+
+    #[inline(always)]
+    pub fn store_at<S: Simd>(self, simd: S, window: Window, offset: usize, value: V3<S>) {
+        self.x.store_at::<S>(simd, window, offset, value.x);
+        self.y.store_at::<S>(simd, window, offset, value.y);
+        self.z.store_at::<S>(simd, window, offset, value.z);
+    }
+}
+
+impl Points {
+    /// The points of a window, `offset` further on. Lanes beyond a short window are 0.
+    #[inline(always)]
+    pub(crate) fn window<S: Simd>(&self, simd: S, window: Window, offset: usize) -> V3<S> {
+        V3 {
+            x: Reading(&self.x[offset..]).load_at(simd, window),
+            y: Reading(&self.y[offset..]).load_at(simd, window),
+            z: Reading(&self.z[offset..]).load_at(simd, window),
+        }
+    }
+}
+
+/// Vectors of space side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct V3<S: Simd> {
+    pub x: S::f32s,
+    pub y: S::f32s,
+    pub z: S::f32s,
+}
+
+impl<S: Simd> V3<S> {
+    #[inline(always)]
+    pub fn splat(simd: S, value: bevy_math::Vec3) -> Self {
+        Self {
+            x: S::f32s::splat(simd, value.x),
+            y: S::f32s::splat(simd, value.y),
+            z: S::f32s::splat(simd, value.z),
+        }
+    }
+
+    /// This where `mask` holds, else `other`.
+    #[inline(always)]
+    pub fn select(self, mask: S::mask32s, other: Self) -> Self {
+        Self {
+            x: mask.select(self.x, other.x),
+            y: mask.select(self.y, other.y),
+            z: mask.select(self.z, other.z),
+        }
+    }
+
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> S::f32s {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+}
+
+impl<S: Simd> Add for V3<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+            z: self.z + other.z,
+        }
+    }
+}
+
+impl<S: Simd> Sub for V3<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            z: self.z - other.z,
+        }
+    }
+}
+
+/// Each vector by the factor of its lane. (A factor of type `S::f32s` would overlap with other operators.)
+#[derive(Clone, Copy)]
+pub(crate) struct Factor<S: Simd>(pub S::f32s);
+
+impl<S: Simd> Mul<V3<S>> for Factor<S> {
+    type Output = V3<S>;
+
+    #[inline(always)]
+    fn mul(self, v: V3<S>) -> V3<S> {
+        V3 {
+            x: self.0 * v.x,
+            y: self.0 * v.y,
+            z: self.0 * v.z,
+        }
+    }
+}
+
+/// All instruction sets of this machine, the plainest first.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<fearless_simd::Level> {
+    use fearless_simd::Level;
+    let best = Level::new();
+    let mut levels = vec![Level::fallback()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+        levels.extend(best.as_avx512().map(Level::Avx512));
+    }
+    levels
+}

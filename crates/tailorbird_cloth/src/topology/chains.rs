@@ -1,0 +1,164 @@
+//! Chains of edges that are solved exactly, sixteen side by side.
+
+use std::ops::Range;
+
+use bevy_math::Vec3;
+
+use super::weave::{EdgeFamily, Weave};
+
+mod cover;
+mod layout;
+
+use cover::{Cover, cover};
+
+/// Chains solved side by side.
+pub const LANES: usize = 16;
+
+/// In [`Chains::particle`]: no particle.
+pub const NONE: u32 = u32::MAX;
+
+/// Up to [`LANES`] chains of similar length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChainBatch {
+    /// Which slots they take: [`LANES`] for each link.
+    pub slots: Range<usize>,
+    /// Particles along the longest of them, at least 2.
+    pub length: usize,
+}
+
+/// Batches that share no particle and can be solved in any order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChainPass {
+    /// What the edges follow: the warp or the weft.
+    pub family: EdgeFamily,
+    /// Which batches.
+    pub batches: Range<usize>,
+}
+
+/// The edges along warp and weft as chains, every edge in one of them.
+///
+/// Slot `batch.slots.start + k * LANES + lane` is the `k`-th link of a chain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Chains {
+    /// Solved one after the other. First all of the family whose chains are longer; of each family the longest
+    /// chains first.
+    pub passes: Vec<ChainPass>,
+    /// The batches of all passes.
+    pub batches: Vec<ChainBatch>,
+    /// For each slot its particle, [`NONE`] where the chain has ended or the lane is empty.
+    pub particle: Vec<u32>,
+    /// For each slot the rest length of the edge to the next link \[m\]; 0 where there is none.
+    pub rest_length: Vec<f32>,
+    /// For each slot the [`Weave::scale`] of that edge \[-\]; 0 where there is none.
+    pub scale: Vec<f32>,
+}
+
+impl Chains {
+    /// Covers the edges along warp and weft with chains, and numbers the particles so that those of the first pass lie
+    /// one after the other.
+    ///
+    /// Returns the chains, in *storage* numbers, and for each of those the given number. In each batch of the first pass
+    /// storage numbers run along the lanes, then to the next link; adjacent lanes and adjacent batches lie side by side
+    /// on the mesh. `rest_positions` \[m\] and `weave` are in the given numbers.
+    pub fn build(rest_positions: &[Vec3], weave: &Weave) -> (Self, Vec<u32>) {
+        let mut families = [EdgeFamily::Warp, EdgeFamily::Weft]
+            .map(|family| (family, covers(rest_positions, weave, family)));
+        let weight = |covers: &[Cover]| covers.first().map_or(0, Cover::weight);
+        if weight(&families[1].1) > weight(&families[0].1) {
+            families.swap(0, 1);
+        }
+
+        let mut chains = Self::default();
+        let mut order = Vec::new();
+        let mut number = Vec::new();
+        for (family, covers) in &families {
+            for cover in covers {
+                let batches = if number.is_empty() {
+                    let batches = layout::side_by_side(cover, rest_positions, weave);
+                    order = layout::order(cover, &batches, rest_positions.len(), weave);
+                    number = inverse(&order);
+                    batches
+                } else {
+                    layout::by_number(cover, &number)
+                };
+                chains.push(*family, cover, &batches, &number, rest_positions, weave);
+            }
+        }
+        if order.is_empty() {
+            order = (0..rest_positions.len() as u32).collect();
+        }
+        (chains, order)
+    }
+
+    /// The ends and rest lengths \[m\] of all edges.
+    pub fn edges(&self) -> impl Iterator<Item = ([u32; 2], f32)> + '_ {
+        let next = self.particle.get(LANES..).unwrap_or_default();
+        let ends = self.particle.iter().zip(next).zip(&self.rest_length);
+        ends.filter(|(_, length)| **length > 0.0)
+            .map(|((a, b), length)| ([*a, *b], *length))
+    }
+
+    fn push(
+        &mut self,
+        family: EdgeFamily,
+        cover: &Cover,
+        batches: &[layout::Batch],
+        number: &[u32],
+        rest_positions: &[Vec3],
+        weave: &Weave,
+    ) {
+        let first = self.batches.len();
+        for batch in batches {
+            let start = self.particle.len();
+            let end = start + batch.length * LANES;
+            self.particle.resize(end, NONE);
+            self.rest_length.resize(end, 0.0);
+            self.scale.resize(end, 0.0);
+            for (lane, &(chain, reversed)) in batch.lanes.iter().enumerate() {
+                for (k, (particle, edge)) in cover.links(chain, reversed).enumerate() {
+                    let slot = start + k * LANES + lane;
+                    self.particle[slot] = number[particle as usize];
+                    if let Some(&[a, b]) = weave.ends.get(edge as usize) {
+                        let [a, b] = [a, b].map(|i| rest_positions[i as usize]);
+                        self.rest_length[slot] = a.distance(b);
+                        self.scale[slot] = weave.scale[edge as usize];
+                    }
+                }
+            }
+            self.batches.push(ChainBatch {
+                slots: start..end,
+                length: batch.length,
+            });
+        }
+        self.passes.push(ChainPass {
+            family,
+            batches: first..self.batches.len(),
+        });
+    }
+}
+
+/// For each given number its storage number, from the `order` that [`Chains::build`] returns.
+pub fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut number = vec![0; order.len()];
+    for (new, &old) in order.iter().enumerate() {
+        number[old as usize] = new as u32;
+    }
+    number
+}
+
+/// Chains for all edges of a family, one cover for each pass.
+fn covers(rest_positions: &[Vec3], weave: &Weave, family: EdgeFamily) -> Vec<Cover> {
+    let mut edges: Vec<u32> = (0..weave.ends.len() as u32)
+        .filter(|edge| weave.family[*edge as usize] == family)
+        .collect();
+    let mut used = vec![0; rest_positions.len()];
+    let mut covers = Vec::new();
+    while !edges.is_empty() {
+        let pass = covers.len() as u32 + 1;
+        covers.push(cover(&mut edges, rest_positions, weave, &mut used, pass));
+    }
+    covers
+}
+
+#[cfg(test)]
+mod tests;

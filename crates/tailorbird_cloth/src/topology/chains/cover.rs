@@ -1,0 +1,231 @@
+//! Finds chains that share no particle.
+
+use bevy_math::Vec3;
+
+use super::{NONE, Weave};
+
+/// Two edges at a particle continue one another where the cosine of the angle between them is below this.
+const CONTINUES: f32 = 0.5;
+
+/// At a particle with more edges of a family than this none continues another.
+const FAN: usize = 16;
+
+/// Chains that share no particle.
+#[derive(Debug, Default)]
+pub(super) struct Cover {
+    /// Where each chain starts in `particles` and `edges`; one more than there are chains.
+    starts: Vec<usize>,
+    particles: Vec<u32>,
+    /// The edge from each particle to the next of its chain, [`NONE`] at its end.
+    edges: Vec<u32>,
+}
+
+impl Cover {
+    pub(super) fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    pub(super) fn particles(&self, chain: usize) -> &[u32] {
+        &self.particles[self.starts[chain]..self.starts[chain + 1]]
+    }
+
+    /// The particles of a chain with the edge from each to the next.
+    pub(super) fn links(
+        &self,
+        chain: usize,
+        reversed: bool,
+    ) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let range = self.starts[chain]..self.starts[chain + 1];
+        let (start, end) = (range.start, range.end);
+        range.map(move |i| {
+            if reversed {
+                let mirror = start + end - 1 - i;
+                let edge = if mirror == start {
+                    NONE
+                } else {
+                    self.edges[mirror - 1]
+                };
+                (self.particles[mirror], edge)
+            } else {
+                (self.particles[i], self.edges[i])
+            }
+        })
+    }
+
+    /// The sum of the squares of the chains' lengths in edges.
+    pub(super) fn weight(&self) -> u64 {
+        (0..self.len())
+            .map(|chain| (self.particles(chain).len() as u64 - 1).pow(2))
+            .sum()
+    }
+
+    /// Adds what of a path does not touch a particle in `used`, which are those marked with `pass`, and returns the edges
+    /// left over.
+    fn push(&mut self, path: &Path, used: &mut [u32], pass: u32, left: &mut Vec<u32>) {
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        for (i, &particle) in path.particles.iter().enumerate() {
+            let start = self.starts[self.starts.len() - 1];
+            let free = used[particle as usize] != pass;
+            if free {
+                used[particle as usize] = pass;
+                self.particles.push(particle);
+                self.edges.push(NONE);
+            }
+            if i > 0 {
+                let edge = path.edges[i - 1];
+                if free && self.particles.len() > start + 1 {
+                    let last = self.edges.len() - 2;
+                    self.edges[last] = edge;
+                } else {
+                    left.push(edge);
+                }
+            }
+            if !free || i + 1 == path.particles.len() {
+                self.end(start, used);
+            }
+        }
+    }
+
+    /// Ends the chain that began at `start`; a particle alone is none.
+    fn end(&mut self, start: usize, used: &mut [u32]) {
+        match self.particles.len() - start {
+            0 => {}
+            1 => {
+                if let Some(particle) = self.particles.pop() {
+                    used[particle as usize] = 0;
+                }
+                self.edges.pop();
+            }
+            _ => self.starts.push(self.particles.len()),
+        }
+    }
+}
+
+/// A walk along edges that continue one another; may cross itself.
+#[derive(Debug, Default)]
+struct Path {
+    particles: Vec<u32>,
+    edges: Vec<u32>,
+}
+
+/// Takes chains from `edges` and leaves there what shares a particle with them. Longest first; at each particle the
+/// edges that lie most nearly opposite continue one another.
+///
+/// `used` has a mark for each particle; `pass` is a mark that none has yet, not 0.
+pub(super) fn cover(
+    edges: &mut Vec<u32>,
+    rest_positions: &[Vec3],
+    weave: &Weave,
+    used: &mut [u32],
+    pass: u32,
+) -> Cover {
+    let mut paths = paths(edges, rest_positions, weave);
+    paths.sort_by_key(|path| std::cmp::Reverse(path.edges.len()));
+    let mut cover = Cover::default();
+    edges.clear();
+    for path in &paths {
+        cover.push(path, used, pass, edges);
+    }
+    edges.sort_unstable();
+    cover
+}
+
+fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
+    let ends = |local: u32| weave.ends[edges[local as usize / 2] as usize];
+    let at = |half: u32| ends(half)[half as usize % 2];
+    let next = continuations(edges, rest_positions, weave);
+    let mut seen = vec![false; edges.len()];
+    let mut paths = Vec::new();
+    // Half 2 e + 0 or 1 is the lower or upper end of an edge. Open paths start at halves that nothing continues.
+    let open = (0..next.len() as u32).filter(|half| next[*half as usize] == NONE);
+    for start in open.chain(0..next.len() as u32) {
+        if seen[start as usize / 2] {
+            continue;
+        }
+        let mut path = Path {
+            particles: vec![at(start)],
+            edges: Vec::new(),
+        };
+        let mut half = start;
+        while half != NONE && !std::mem::replace(&mut seen[half as usize / 2], true) {
+            path.edges.push(edges[half as usize / 2]);
+            path.particles.push(at(half ^ 1));
+            half = next[(half ^ 1) as usize];
+        }
+        if half == start {
+            cut(&mut path, rest_positions);
+        }
+        paths.push(path);
+    }
+    paths
+}
+
+/// For each half (end of an edge) the half at the same particle that continues it, or [`NONE`].
+fn continuations(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<u32> {
+    let mut halves: Vec<(u32, u32)> = edges
+        .iter()
+        .enumerate()
+        .flat_map(|(e, edge)| {
+            let [a, b] = weave.ends[*edge as usize];
+            [(a, 2 * e as u32), (b, 2 * e as u32 + 1)]
+        })
+        .collect();
+    halves.sort_unstable();
+    let direction = |half: u32| {
+        let [a, b] =
+            weave.ends[edges[half as usize / 2] as usize].map(|i| rest_positions[i as usize]);
+        let along = (b - a).normalize_or_zero();
+        if half.is_multiple_of(2) {
+            along
+        } else {
+            -along
+        }
+    };
+    let mut next = vec![NONE; edges.len() * 2];
+    let mut pairs = Vec::new();
+    for fan in halves.chunk_by(|a, b| a.0 == b.0) {
+        if fan.len() > FAN {
+            continue;
+        }
+        pairs.clear();
+        for (i, &(_, a)) in fan.iter().enumerate() {
+            for &(_, b) in &fan[i + 1..] {
+                let cosine = direction(a).dot(direction(b));
+                if cosine < CONTINUES {
+                    pairs.push((cosine, a, b));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for &(_, a, b) in &pairs {
+            if next[a as usize] == NONE && next[b as usize] == NONE {
+                next[a as usize] = b;
+                next[b as usize] = a;
+            }
+        }
+    }
+    next
+}
+
+/// Turns a closed path so that it starts at the particle that lies furthest in a direction along no axis: the cuts of
+/// rings side by side come to lie side by side. The edge that is cut off is the one to the lower neighbour.
+fn cut(path: &mut Path, rest_positions: &[Vec3]) {
+    let height = |path: &Path, i: &usize| {
+        let p = rest_positions[path.particles[*i] as usize];
+        p.dot(Vec3::new(0.48, 0.71, 0.52))
+    };
+    let furthest = (0..path.edges.len()).max_by(|a, b| height(path, a).total_cmp(&height(path, b)));
+    if let Some(start) = furthest {
+        path.particles.pop();
+        path.particles.rotate_left(start);
+        path.edges.rotate_left(start);
+        let last = path.particles.len() - 1;
+        if height(path, &last) > height(path, &1) {
+            path.particles[1..].reverse();
+            path.edges.reverse();
+        }
+        path.particles.extend(path.particles.first().copied());
+    }
+}

@@ -1,0 +1,105 @@
+//! The edges of a triangle mesh and the triangles on their sides.
+
+/// The edges of a triangle mesh.
+///
+/// A *side* is one of the three directed edges of one triangle: side `3 t + s` runs from corner `s` of triangle `t` to
+/// the next one.
+#[derive(Clone, Debug, Default)]
+pub struct MeshEdges {
+    /// The particles at the ends of each edge, the lower first. Ascending.
+    pub ends: Vec<[u32; 2]>,
+    /// For each side its edge.
+    pub edge_of_side: Vec<u32>,
+    /// Where the sides of each edge start in `sides`; one more than there are edges.
+    offsets: Vec<u32>,
+    sides: Vec<u32>,
+}
+
+impl MeshEdges {
+    /// The edges of triangles whose corners are all below `particles`. Linear time where no particle has very many.
+    pub fn new(particles: usize, triangles: &[[u32; 3]]) -> Self {
+        let directed = |side: usize| {
+            let triangle = &triangles[side / 3];
+            let (from, to) = (triangle[side % 3], triangle[(side + 1) % 3]);
+            [from.min(to), from.max(to)]
+        };
+        let count = triangles.len() * 3;
+        let mut next = vec![0u32; particles + 1];
+        for side in 0..count {
+            next[directed(side)[0] as usize + 1] += 1;
+        }
+        for i in 0..particles {
+            next[i + 1] += next[i];
+        }
+        let starts = next.clone();
+        let mut buckets = vec![(0u32, 0u32); count];
+        for side in 0..count {
+            let [low, high] = directed(side);
+            buckets[next[low as usize] as usize] = (high, side as u32);
+            next[low as usize] += 1;
+        }
+
+        let mut edges = Self {
+            edge_of_side: vec![0; count],
+            sides: Vec::with_capacity(count),
+            offsets: Vec::with_capacity(count / 2 + 1),
+            ends: Vec::with_capacity(count / 2),
+        };
+        for low in 0..particles {
+            let bucket = &mut buckets[starts[low] as usize..starts[low + 1] as usize];
+            bucket.sort_unstable();
+            for sides in bucket.chunk_by(|a, b| a.0 == b.0) {
+                edges.offsets.push(edges.sides.len() as u32);
+                for &(_, side) in sides {
+                    edges.edge_of_side[side as usize] = edges.ends.len() as u32;
+                    edges.sides.push(side);
+                }
+                edges.ends.push([low as u32, sides[0].0]);
+            }
+        }
+        edges.offsets.push(count as u32);
+        edges
+    }
+
+    /// The number of edges.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The sides that lie on one edge: one at a border, more than two where the mesh is not a surface.
+    pub fn sides(&self, edge: u32) -> &[u32] {
+        let edge = edge as usize;
+        &self.sides[self.offsets[edge] as usize..self.offsets[edge + 1] as usize]
+    }
+
+    /// The sides of other triangles on the edge of `side`.
+    pub fn across(&self, side: u32) -> impl Iterator<Item = u32> + '_ {
+        self.sides(self.edge_of_side[side as usize])
+            .iter()
+            .copied()
+            .filter(move |other| *other != side)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fin_on_a_quad_is_the_third_side_of_its_edge() {
+        let triangles = [[0, 1, 2], [0, 2, 3], [4, 2, 0]];
+        let edges = MeshEdges::new(5, &triangles);
+        assert_eq!(
+            edges.ends,
+            [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [2, 4]]
+        );
+        assert_eq!(edges.sides(1), [2, 3, 7]);
+        assert_eq!(edges.across(3).collect::<Vec<_>>(), [2, 7]);
+        assert!(MeshEdges::new(0, &[]).is_empty());
+    }
+}

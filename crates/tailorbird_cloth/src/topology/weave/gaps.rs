@@ -1,0 +1,63 @@
+//! Edges that join threads which would end inside an irregular mesh.
+
+use bevy_math::Vec3;
+
+use super::{EdgeFamily, Leaning, Weave};
+
+/// The cosine of four times the angle to a thread up to which an edge can stand in for it: 40°.
+const NEAR: f32 = -0.94;
+
+/// Edges at a particle leave it the same way where the cosine of the angle between them is above this.
+const SAME_WAY: f32 = 0.25;
+
+/// Makes edges that lie askew follow a thread where, at both ends, no other edge that does leaves the same way: the one
+/// that lies best first. Else a thread would end there, and what pulls at it would be held by shear alone.
+pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[Vec3]) {
+    let mut gaps: Vec<usize> = (0..leanings.len())
+        .filter(|e| weave.family[*e] == EdgeFamily::Shear && leanings[*e].alignment > NEAR)
+        .collect();
+    if gaps.is_empty() {
+        return;
+    }
+    // Rounded, so that among equals the order of the mesh decides.
+    gaps.sort_by_key(|e| (-1e3 * leanings[*e].alignment) as i32);
+
+    let mut starts = vec![0usize; rest_positions.len() + 1];
+    for &i in weave.ends.iter().flatten() {
+        starts[i as usize + 1] += 1;
+    }
+    for i in 0..rest_positions.len() {
+        starts[i + 1] += starts[i];
+    }
+    let mut next = starts.clone();
+    let mut edges = vec![0usize; weave.ends.len() * 2];
+    for (e, ends) in weave.ends.iter().enumerate() {
+        for &i in ends {
+            edges[next[i as usize]] = e;
+            next[i as usize] += 1;
+        }
+    }
+    let along = |weave: &Weave, edge: usize, from: u32| {
+        let [a, b] = weave.ends[edge].map(|i| rest_positions[i as usize]);
+        let along = (b - a).normalize_or_zero();
+        if weave.ends[edge][0] == from {
+            along
+        } else {
+            -along
+        }
+    };
+    for gap in gaps {
+        let family = leanings[gap].family;
+        let ends_at = |i: u32| {
+            let way = along(weave, gap, i);
+            edges[starts[i as usize]..starts[i as usize + 1]]
+                .iter()
+                .filter(|e| weave.family[**e] == family)
+                .all(|e| along(weave, *e, i).dot(way) < SAME_WAY)
+        };
+        let [a, b] = weave.ends[gap];
+        if ends_at(a) && ends_at(b) {
+            weave.family[gap] = family;
+        }
+    }
+}
