@@ -97,10 +97,13 @@ fn json_has_the_keys_and_their_types() {
         "ms_per_step_median",
         "particles",
         "state_hash",
+        "step_speed_max",
+        "step_speed_rms",
         "steps",
         "stretch_max",
         "stretch_mean",
         "stretch_p99",
+        "substeps",
     ];
     assert_eq!(keys, expected);
     assert_eq!(report["particles"], 64);
@@ -239,6 +242,9 @@ fn wrong_values_are_named_with_their_flag_and_end_with_code_2() {
         ("--iterations", "-1"),
         ("--iterations", "1001"),
         ("--solver", "jacobi"),
+        ("--isa", "mmx"),
+        ("--viscosity", "-1"),
+        ("--bend-compliance", "NaN"),
         ("--gravity", "inf"),
         ("--damping", "-0.1"),
         ("--wind", "1,2"),

@@ -18,6 +18,10 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = size, allow_hyphen_values = true)]
     pub size: u32,
 
+    /// How the sheet is described.
+    #[arg(long, value_enum, default_value_t = Mesh::Grid)]
+    pub mesh: Mesh,
+
     /// What is pinned: the corners (0, 0) and (0, N−1), or row 0 [default: what the scene has].
     #[arg(long, value_enum)]
     pub pins: Option<Pins>,
@@ -35,10 +39,9 @@ pub struct Args {
     #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_hyphen_values = true)]
     pub hz: f64,
 
-    /// Substeps in a step.
-    #[arg(long, value_name = "n", default_value_t = ClothSettings::default().substeps,
-          value_parser = substeps, allow_hyphen_values = true)]
-    pub substeps: u32,
+    /// Substeps in a step [default: as many as the solver needs at this size].
+    #[arg(long, value_name = "n", value_parser = substeps, allow_hyphen_values = true)]
+    pub substeps: Option<u32>,
 
     /// Passes over the constraints in a substep.
     #[arg(long, value_name = "k", default_value_t = ClothSettings::default().iterations,
@@ -46,7 +49,7 @@ pub struct Args {
     pub iterations: u32,
 
     /// How the constraints are solved.
-    #[arg(long, value_enum, default_value_t = Solver::GaussSeidel)]
+    #[arg(long, value_enum, default_value_t = Solver::Chains)]
     pub solver: Solver,
 
     /// Acceleration downwards [m/s²].
@@ -66,9 +69,26 @@ pub struct Args {
     #[arg(long, value_name = "x,y,z,r", value_parser = sphere, allow_hyphen_values = true)]
     pub sphere: Option<Sphere>,
 
-    /// Compliance of all springs [m/N].
+    /// The instructions that the kernels use.
+    #[arg(long, value_enum, default_value_t = Isa::Auto)]
+    pub isa: Isa,
+
+    /// Compliance along warp and weft [m/N].
     #[arg(long, value_name = "A", default_value_t = 0.0, value_parser = not_negative, allow_hyphen_values = true)]
     pub compliance: f32,
+
+    /// Compliance in shear [m/N] [default: cotton's for chains, 0 for gauss-seidel].
+    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    pub shear_compliance: Option<f32>,
+
+    /// Compliance in bending [1/(N m)] [default: cotton's for chains, 0 for gauss-seidel].
+    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    pub bend_compliance: Option<f32>,
+
+    /// Friction inside the fabric [m²/s].
+    #[arg(long, value_name = "V", default_value_t = ClothMaterial::default().viscosity,
+          value_parser = not_negative, allow_hyphen_values = true)]
+    pub viscosity: f32,
 
     /// Mass per area [kg/m²].
     #[arg(long, value_name = "R", default_value_t = ClothMaterial::default().areal_density,
@@ -114,6 +134,17 @@ pub enum Scene {
     Free,
 }
 
+/// How the sheet is described.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mesh {
+    /// As columns and rows.
+    Grid,
+    /// As triangles: the same particles in random order, cells cut along random diagonals, triangles in random order.
+    Shuffled,
+    /// As triangles, in random order, whose inner corners lie irregularly.
+    Irregular,
+}
+
 /// Which particles are held.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pins {
@@ -130,6 +161,35 @@ pub enum Pins {
 pub enum Solver {
     /// One after the other, in batches that share no particle.
     GaussSeidel,
+    /// Whole lines of edges at once.
+    Chains,
+}
+
+/// The instructions that the kernels use.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isa {
+    /// The best of this machine.
+    Auto,
+    /// One number at a time.
+    Scalar,
+    /// 4 numbers at a time.
+    Sse2,
+    /// 8 numbers at a time.
+    Avx2,
+    /// 16 numbers at a time.
+    Avx512,
+}
+
+impl From<Isa> for InstructionSet {
+    fn from(isa: Isa) -> Self {
+        match isa {
+            Isa::Auto => Self::Auto,
+            Isa::Scalar => Self::Scalar,
+            Isa::Sse2 => Self::Sse2,
+            Isa::Avx2 => Self::Avx2,
+            Isa::Avx512 => Self::Avx512,
+        }
+    }
 }
 
 /// A sphere in the world.
@@ -157,6 +217,28 @@ impl Args {
             Scene::Flag => Vec3::new(8.0, 0.0, 2.0),
             Scene::Hang | Scene::Drape | Scene::Free => Vec3::ZERO,
         })
+    }
+
+    /// What the sheet is made of.
+    ///
+    /// The springs of the classic scheme are rigid, as they always were; shear and bending that are as soft as a fabric's are
+    /// what lets the chain solver's sheet fold.
+    pub fn material(&self) -> ClothMaterial {
+        let cotton = ClothMaterial::cotton();
+        let [shear, bend] = match self.solver {
+            Solver::GaussSeidel => [0.0; 2],
+            Solver::Chains => [cotton.shear_compliance, cotton.bend_compliance],
+        };
+        ClothMaterial {
+            areal_density: self.density,
+            warp_compliance: self.compliance,
+            weft_compliance: self.compliance,
+            shear_compliance: self.shear_compliance.unwrap_or(shear),
+            bend_compliance: self.bend_compliance.unwrap_or(bend),
+            damping: self.damping,
+            viscosity: self.viscosity,
+            ..cotton
+        }
     }
 
     /// The sphere asked for, or that of the scene.

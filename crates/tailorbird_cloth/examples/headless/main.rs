@@ -9,6 +9,7 @@
 
 mod cli;
 mod dump;
+mod mesh;
 mod report;
 mod scene;
 

@@ -15,6 +15,7 @@ use super::{cli::Args, scene::Sheet};
 pub struct Report {
     particles: usize,
     constraints: usize,
+    substeps: u32,
     steps: u32,
     /// The whole step, from reading transforms to normals and bounds [ms].
     ms_per_step_median: f64,
@@ -24,6 +25,10 @@ pub struct Report {
     stretch_p99: f32,
     /// The largest [-].
     stretch_max: f32,
+    /// How far particles moved in the last step, by its length, root of the mean square [m/s].
+    step_speed_rms: f64,
+    /// The largest [m/s].
+    step_speed_max: f32,
     /// The lowest particle [m].
     lowest_y: f32,
     /// Of the particles that are not pinned [J].
@@ -43,15 +48,26 @@ impl Report {
         let topology = sheet.get::<ClothTopology>();
         let frame = sheet.get::<ClothFrame>();
         let stretch = particles.stretch(topology);
+        let speeds: Vec<f32> = particles
+            .points()
+            .iter()
+            .zip(particles.previous_points().iter())
+            .map(|(to, from)| to.distance(from) * args.hz as f32)
+            .collect();
         let lowest = |lowest: f32, value: f32| lowest.min(value);
         Self {
             particles: particles.len(),
             constraints: topology.constraints.len(),
+            substeps: sheet.app.world().resource::<ClothStep>().substeps(),
             steps: args.steps,
             ms_per_step_median: step_time.as_secs_f64() * 1e3,
             stretch_mean: stretch.mean,
             stretch_p99: stretch.p99,
             stretch_max: stretch.max,
+            step_speed_rms: (speeds.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>()
+                / speeds.len() as f64)
+                .sqrt(),
+            step_speed_max: speeds.iter().copied().fold(0.0, f32::max),
             lowest_y: sheet
                 .world_positions()
                 .map(|p| p.y)
@@ -70,7 +86,7 @@ impl Report {
 
     /// Time for one constraint in one pass, if the whole step were nothing else [ns].
     fn ns_per_constraint(&self, args: &Args) -> f64 {
-        let passes = f64::from(args.substeps * args.iterations);
+        let passes = f64::from(self.substeps * args.iterations);
         self.ms_per_step_median * 1e6 / (self.constraints as f64 * passes)
     }
 }
@@ -105,7 +121,7 @@ impl Display for Table<'_> {
             ("steps", report.steps.to_string()),
             (
                 "passes per step",
-                format!("{} × {}", args.substeps, args.iterations),
+                format!("{} × {}", report.substeps, args.iterations),
             ),
             (
                 "step, median",
@@ -118,6 +134,11 @@ impl Display for Table<'_> {
             ("stretch, mean", percent(report.stretch_mean)),
             ("stretch, 99 %", percent(report.stretch_p99)),
             ("stretch, largest", percent(report.stretch_max)),
+            ("speed, rms", format!("{:.3e} m/s", report.step_speed_rms)),
+            (
+                "speed, largest",
+                format!("{:.3e} m/s", report.step_speed_max),
+            ),
             ("lowest y", format!("{:.6} m", report.lowest_y)),
             ("kinetic energy", format!("{:.3e} J", report.kinetic_energy)),
             ("momentum", format!("{x:.3e}, {y:.3e}, {z:.3e} kg m/s")),

@@ -9,10 +9,13 @@ use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
 
-use super::cli::{Args, Pins};
+use super::{
+    cli::{Args, Mesh, Pins, Solver},
+    mesh,
+};
 
 /// Width and height of the sheet [m].
-const SIZE: f32 = 2.0;
+pub const SIZE: f32 = 2.0;
 
 /// How far a seed moves particles [m].
 const NUDGE: f32 = 1e-4;
@@ -56,6 +59,7 @@ impl Sheet {
             gravity: Vec3::NEG_Y * args.gravity,
             substeps: args.substeps,
             iterations: args.iterations,
+            instruction_set: args.isa.into(),
             ..Default::default()
         })
         .insert_resource(match args.wind() {
@@ -127,7 +131,7 @@ impl Sheet {
             .fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
         let mean = moment / mass;
         // An acceleration a moves by a h² (1 + 2 + … + n) in n substeps of length h.
-        let n = args.substeps as f32;
+        let n = self.app.world().resource::<ClothStep>().substeps() as f32;
         let h = timestep.as_secs_f32() / n;
         let acceleration = NUDGE / (h * h * n * (n + 1.0) / 2.0);
         let pushes: Vec<_> = (0..particles.len())
@@ -144,28 +148,43 @@ impl Sheet {
 
 /// The sheet: rows along +z from −1, columns along +x from −1, at y = 1.
 fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
-    let pins = match args.pins() {
-        Pins::Corners => ClothPins::corners(GridCorner::TOP),
-        Pins::Edge => ClothPins::edges([GridEdge::Top]),
-        Pins::None => ClothPins::default(),
-    };
-    let material = ClothMaterial {
-        areal_density: args.density,
-        stretch_compliance: args.compliance,
-        shear_compliance: args.compliance,
-        bend_compliance: args.compliance,
-        damping: args.damping,
-        ..Default::default()
-    };
     // A grid stands upright, its rows along −y.
     let transform =
         Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
-    let cloth = Cloth::grid(Vec2::splat(SIZE), UVec2::splat(args.size)).centered();
-    world.spawn((cloth, material, pins, transform)).id()
+    let grid = || Cloth::grid(Vec2::splat(SIZE), UVec2::splat(args.size)).centered();
+    let cloth = match args.mesh {
+        Mesh::Grid => grid(),
+        Mesh::Shuffled => mesh::sheet(args.size, 0.0),
+        Mesh::Irregular => mesh::sheet(args.size, mesh::JITTER),
+    };
+    let pins = match (args.pins(), args.mesh) {
+        (Pins::Corners, Mesh::Grid) => ClothPins::corners(GridCorner::TOP),
+        (Pins::Edge, Mesh::Grid) => ClothPins::edges([GridEdge::Top]),
+        (Pins::Corners, _) => {
+            let corner = Vec3::new(0.5 * SIZE, 0.5 * SIZE, 0.0);
+            let [left, right] = [corner * Vec3::new(-1.0, 1.0, 1.0), corner];
+            let within = |center| PinSelection::Within {
+                center,
+                radius: mesh::NEAR,
+            };
+            ClothPins::default()
+                .with(ClothPin::new(within(left)))
+                .with(ClothPin::new(within(right)))
+        }
+        (Pins::Edge, _) => ClothPins::matching(&cloth, |p| p.y > 0.5 * SIZE - mesh::NEAR),
+        (Pins::None, _) => ClothPins::default(),
+    };
+    let solver = match args.solver {
+        Solver::GaussSeidel => ClothSolver::GaussSeidel,
+        Solver::Chains => ClothSolver::Chains,
+    };
+    world
+        .spawn((cloth, args.material(), solver, pins, transform))
+        .id()
 }
 
 /// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
-fn unit(key: u64) -> f32 {
+pub fn unit(key: u64) -> f32 {
     let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
