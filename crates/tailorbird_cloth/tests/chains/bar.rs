@@ -1,0 +1,67 @@
+//! A strip that hangs by its upper edge is an elastic bar: it gets longer by c σ g L²/2.
+
+use bevy_math::{UVec2, Vec2, Vec3};
+use tailorbird_cloth::prelude::*;
+
+use crate::scene::{G, Scene, Sheet, rigid};
+
+const LENGTH: f32 = 1.0;
+const COLUMNS: u32 = 4;
+
+/// More rows than these for each substep and a strip of this length does not come to rest: waves across it, whose speed is the
+/// root of tension by mass, pass more than an edge in a substep of length h where rows² g h²/L is near 1. At 8 it is 0.17.
+const ROWS_PER_SUBSTEP: u32 = 8;
+
+/// How much longer the inner columns of the strip get \[m\].
+///
+/// The columns at the border are as stiff as those within and carry half as much, so they are left out, and shear, which would
+/// have them help, is soft.
+fn elongation(rows: u32, substeps: u32, material: ClothMaterial) -> f64 {
+    let across = LENGTH / (rows - 1) as f32 * (COLUMNS - 1) as f32;
+    let mut strip = Sheet::new(&Scene {
+        size: Vec2::new(across, LENGTH),
+        resolution: UVec2::new(COLUMNS, rows),
+        material,
+        pins: ClothPins::edges([GridEdge::Top]),
+        gravity: Vec3::NEG_Y * G,
+        substeps: Some(substeps),
+        ..Scene::default()
+    });
+    strip.steps(300);
+    assert_eq!(strip.complaint(), None);
+    let particles = strip.particles();
+    let length = |column: u32| {
+        let top = particles.position(column as usize);
+        let bottom = particles.position(((rows - 1) * COLUMNS + column) as usize);
+        f64::from(top.y - bottom.y)
+    };
+    0.5 * (length(1) + length(2)) - f64::from(LENGTH)
+}
+
+#[test]
+fn a_hanging_strip_gets_longer_as_an_elastic_bar_at_any_resolution() {
+    let compliance = 2e-3;
+    let material = ClothMaterial {
+        warp_compliance: compliance,
+        weft_compliance: compliance,
+        shear_compliance: 1e4,
+        bend_compliance: 1e9,
+        damping: 3.0,
+        ..rigid()
+    };
+    let expected = f64::from(0.5 * compliance * material.areal_density * G * LENGTH * LENGTH);
+    let mut wrong = Vec::new();
+    for rows in [32, 64, 128] {
+        for substeps in [2, 4, 8, 16] {
+            if rows > ROWS_PER_SUBSTEP * substeps {
+                continue;
+            }
+            let ratio = elongation(rows, substeps, material) / expected;
+            println!("rows {rows}, substeps {substeps}: {ratio:.4} of {expected:.6} m");
+            if (ratio - 1.0).abs() > 0.02 {
+                wrong.push((rows, substeps, ratio));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}

@@ -1,0 +1,114 @@
+//! A strip that is clamped at one end droops as the elastica: B θ'' = −σ g (L − s) cos θ with θ(0) = 0, θ'(L) = 0.
+
+use bevy_math::{UVec2, Vec2, Vec3};
+use tailorbird_cloth::prelude::*;
+
+use crate::scene::{G, Scene, Sheet, rigid};
+
+/// How far the free end hangs below the clamp, by the length, where `weight` = σ g L³/B. Runge–Kutta, and the curvature at the
+/// clamp by bisection.
+fn elastica(weight: f64) -> f64 {
+    let shoot = |curvature: f64| {
+        let (mut angle, mut bend, mut droop) = (0.0_f64, curvature, 0.0);
+        let n = 2000;
+        let h = 1.0 / f64::from(n);
+        let slope = |s: f64, [angle, bend, _]: [f64; 3]| {
+            [bend, -weight * (1.0 - s) * angle.cos(), angle.sin()]
+        };
+        for k in 0..n {
+            let s = f64::from(k) * h;
+            let y = [angle, bend, droop];
+            let ahead = |k: [f64; 3], part: f64| std::array::from_fn(|i| y[i] + part * h * k[i]);
+            let k1 = slope(s, y);
+            let k2 = slope(s + 0.5 * h, ahead(k1, 0.5));
+            let k3 = slope(s + 0.5 * h, ahead(k2, 0.5));
+            let k4 = slope(s + h, ahead(k3, 1.0));
+            let sum: [f64; 3] = std::array::from_fn(|i| k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            angle += sum[0] * h / 6.0;
+            bend += sum[1] * h / 6.0;
+            droop += sum[2] * h / 6.0;
+        }
+        (bend, droop)
+    };
+    // Between straight and what a beam without deflection would have.
+    let (mut low, mut high) = (0.0, 0.5 * weight);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if shoot(middle).0 < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    shoot(high).1
+}
+
+#[test]
+fn the_elastica_of_a_stiff_strip_is_a_beam() {
+    // σ g L⁴/(8 B).
+    assert!((elastica(0.01) / (0.01 / 8.0) - 1.0).abs() < 1e-4);
+}
+
+const COLUMNS: u32 = 5;
+const LENGTH: f32 = 0.5;
+
+/// A strip of `rows` whose σ g L³/B is `weight`, L being its free length: how far it droops by that length. None where bending
+/// is more than half as stiff as a pass in a substep can be.
+fn droop(rows: u32, substeps: u32, weight: f32) -> Option<f64> {
+    let spacing = LENGTH / (rows - 1) as f32;
+    // The clamp is half way between the two pinned rows.
+    let free = spacing * (rows as f32 - 1.5);
+    // A column at the border is as stiff as one within: as a whole the strip is as stiff as one that is a column wider.
+    let wider = COLUMNS as f32 / (COLUMNS - 1) as f32;
+    let density = rigid().areal_density;
+    let rigidity = density * G * free.powi(3) / weight / wider;
+    // α̃ = L²/(B h²) is at least W/2 = 3/(σ L²), L being the spacing: B h² is at most σ L⁴/3.
+    let h = 1.0 / (60 * substeps) as f32;
+    if rigidity * h * h > density * spacing.powi(4) / 6.0 {
+        return None;
+    }
+    let mut strip = Sheet::new(&Scene {
+        size: Vec2::new(spacing * (COLUMNS - 1) as f32, LENGTH),
+        resolution: UVec2::new(COLUMNS, rows),
+        material: ClothMaterial {
+            bend_compliance: 1.0 / rigidity,
+            damping: 4.0,
+            ..rigid()
+        },
+        pins: ClothPins::particles(0..2 * COLUMNS),
+        gravity: Vec3::NEG_Z * G,
+        substeps: Some(substeps),
+        ..Scene::default()
+    });
+    strip.steps(360);
+    assert_eq!(strip.complaint(), None);
+    let particles = strip.particles();
+    let last = particles.len() - COLUMNS as usize..particles.len();
+    let depth: f64 = last.map(|i| -f64::from(particles.position(i).z)).sum();
+    Some(depth / f64::from(COLUMNS) / f64::from(free))
+}
+
+#[test]
+fn a_clamped_strip_droops_as_the_elastica() {
+    let mut wrong = Vec::new();
+    for weight in [0.8, 3.0, 20.0] {
+        let expected = elastica(f64::from(weight));
+        let mut measured = 0;
+        for rows in [9, 13, 21] {
+            for substeps in [4, 16, 64] {
+                let Some(droop) = droop(rows, substeps, weight) else {
+                    continue;
+                };
+                measured += 1;
+                println!(
+                    "{weight}, {rows} rows, {substeps} substeps: {droop:.4}, not {expected:.4}"
+                );
+                if (droop / expected - 1.0).abs() > 0.05 {
+                    wrong.push((weight, rows, substeps, droop, expected));
+                }
+            }
+        }
+        assert!(measured >= 3, "{weight}");
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}

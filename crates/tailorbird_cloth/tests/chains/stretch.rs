@@ -1,0 +1,83 @@
+//! How far a sheet that should not stretch does.
+
+use std::f32::consts::TAU;
+
+use bevy_math::{UVec2, Vec3};
+use tailorbird_cloth::prelude::*;
+
+use crate::scene::{G, Scene, Sheet};
+
+const SIZE: UVec2 = UVec2::splat(64);
+
+/// The largest of each figure over some steps; `before` is done before each of them.
+fn worst(sheet: &mut Sheet, steps: u32, mut before: impl FnMut(&mut Sheet, u32)) -> Stretch {
+    let mut worst = Stretch::default();
+    for step in 0..steps {
+        before(sheet, step);
+        sheet.step();
+        let Stretch { mean, p99, max } = sheet.stretch();
+        worst.mean = worst.mean.max(mean);
+        worst.p99 = worst.p99.max(p99);
+        worst.max = worst.max.max(max);
+    }
+    assert_eq!(sheet.complaint(), None);
+    worst
+}
+
+/// Checks the mean and the 99 % against bounds.
+fn check(what: &str, is: Stretch, mean: f32, p99: f32) {
+    println!("{what}: {is:?}");
+    assert!(is.mean <= mean && is.p99 <= p99, "{what}: {is:?}");
+}
+
+#[test]
+fn a_hanging_sheet_hardly_stretches() {
+    let mut sheet = Sheet::new(&Scene::hang(SIZE));
+    let falling = worst(&mut sheet, 225, |_, _| ());
+    println!("hang, falling: {falling:?}");
+    let hanging = worst(&mut sheet, 75, |_, _| ());
+    check("hang, last quarter", hanging, 1e-3, 1e-2);
+}
+
+/// Where forces are many times the weight, transverse waves outrun the eight substeps of a quiet sheet of this size.
+const BUSY: Option<u32> = Some(16);
+
+#[test]
+fn a_sheet_in_a_storm_hardly_stretches() {
+    // 20 m/s.
+    let mut sheet = Sheet::new(&Scene {
+        pins: ClothPins::edges([GridEdge::Left]),
+        gravity: Vec3::NEG_Y * G,
+        wind: Wind::steady(Vec3::new(19.0, 0.0, 6.2)),
+        substeps: BUSY,
+        ..Scene::hang(SIZE)
+    });
+    let worst = worst(&mut sheet, 300, |_, _| ());
+    check("storm", worst, 6e-3, 0.2);
+}
+
+#[test]
+fn a_sheet_that_is_dragged_quickly_hardly_stretches() {
+    let mut sheet = Sheet::new(&Scene {
+        gravity: Vec3::NEG_Y * G,
+        substeps: BUSY,
+        ..Scene::hang(SIZE)
+    });
+    let pins = [0, SIZE.x - 1].map(|i| (i, sheet.particles().position(i as usize)));
+    // 1 m aside and back, twice in a second: up to 6.3 m/s and 79 m/s².
+    let drag = |sheet: &mut Sheet, step: u32| {
+        let phase = TAU * 2.0 * step as f32 / 60.0;
+        let aside = Vec3::X * 0.5 * (1.0 - phase.cos());
+        sheet.change(|held: &mut ClothPins| {
+            held.pins = pins.map(|(i, at)| ClothPin::at(i, at + aside)).to_vec();
+        });
+    };
+    check("drag", worst(&mut sheet, 180, drag), 1e-2, 0.2);
+}
+
+#[test]
+fn a_sheet_that_falls_on_a_sphere_hardly_stretches() {
+    let mut sheet = Sheet::new(&Scene::drape(SIZE));
+    let worst = worst(&mut sheet, 300, |_, _| ());
+    check("drape", worst, 1.2e-2, 0.13);
+}
