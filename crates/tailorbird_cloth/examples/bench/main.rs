@@ -1,0 +1,49 @@
+//! Measures time against stretch: the chain solver over its substeps, the classic relaxation over its iterations.
+//!
+//! ```text
+//! cargo run --release -p tailorbird_cloth --example bench -- hang --size 64 --json hang.json
+//! ```
+//!
+//! 5 s at 60 Hz each. Prints a table; `--json` writes the same figures as an array, which `benches/peers` can draw. `--help`
+//! lists the rest.
+
+mod cli;
+mod machine;
+mod measure;
+mod record;
+mod scene;
+
+use std::{fs::File, io, process::ExitCode};
+
+use clap::Parser as _;
+
+use cli::Args;
+use record::{HEADER, Record};
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Measures, prints and writes.
+fn run(args: &Args) -> io::Result<()> {
+    // Before the first measurement, so that a path that cannot be written costs no time.
+    let file = args.json.as_ref().map(File::create).transpose()?;
+    println!("{}", machine::describe());
+    println!("{HEADER}");
+    let mut records: Vec<Record> = Vec::new();
+    for setup in scene::setups(args) {
+        let record = measure::measure(&setup, args);
+        println!("{record}");
+        records.push(record);
+    }
+    if let Some(file) = file {
+        serde_json::to_writer_pretty(file, &records)?;
+    }
+    Ok(())
+}
