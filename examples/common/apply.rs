@@ -92,6 +92,7 @@ fn apply_cloth(
         (
             &mut Cloth,
             &mut ClothMaterial,
+            &mut ClothSolver,
             &mut ClothShading,
             &mut ClothPins,
         ),
@@ -99,8 +100,9 @@ fn apply_cloth(
     >,
 ) {
     drag.radius = settings.grab_radius;
-    for (mut cloth, mut material, mut shading, mut pins) in &mut cloths {
+    for (mut cloth, mut material, mut solver, mut shading, mut pins) in &mut cloths {
         material.set_if_neq(settings.material);
+        solver.set_if_neq(settings.solver);
         shading.set_if_neq(settings.shading);
         if cloth.set_if_neq(settings.scene.cloth(settings.resolution)) {
             // They name particles of the grid as it was.
@@ -147,6 +149,7 @@ fn apply_solver(
         iterations: settings.iterations,
         paused: settings.paused,
         pending_steps,
+        ..default()
     });
 }
 

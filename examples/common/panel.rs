@@ -27,7 +27,9 @@ pub fn panel(ui: &mut Ui, state: &mut PanelState) {
     ));
     scene(ui, state.settings);
     section(ui, "Air and gravity", true, |ui| air(ui, state.settings));
-    section(ui, "Solver", true, |ui| solver(ui, state.settings));
+    section(ui, "Solver", true, |ui| {
+        solver(ui, state.settings, status.substeps);
+    });
     section(ui, "Material", true, |ui| material(ui, state.settings));
     section(ui, "Ball and hand", false, |ui| {
         ball_and_hand(ui, state.settings);
@@ -92,10 +94,23 @@ fn air(ui: &mut Ui, settings: &mut DemoSettings) {
     });
 }
 
-fn solver(ui: &mut Ui, settings: &mut DemoSettings) {
-    ui.add(Slider::new(&mut settings.substeps, 1..=30).text("substeps"));
+fn solver(ui: &mut Ui, settings: &mut DemoSettings, substeps_now: u32) {
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut settings.solver, ClothSolver::Chains, "chains");
+        ui.radio_value(
+            &mut settings.solver,
+            ClothSolver::GaussSeidel,
+            "Gauss–Seidel",
+        );
+    });
+    let mut automatic = settings.substeps.is_none();
+    let mut substeps = settings.substeps.unwrap_or(substeps_now.max(1));
+    ui.checkbox(&mut automatic, "as many substeps as needed");
+    let slider = Slider::new(&mut substeps, 1..=30).text("substeps");
+    ui.add_enabled(!automatic, slider);
+    settings.substeps = (!automatic).then_some(substeps);
     ui.add(Slider::new(&mut settings.iterations, 0..=30).text("iterations"));
-    ui.add(Slider::new(&mut settings.resolution, 4..=128).text("resolution"));
+    ui.add(Slider::new(&mut settings.resolution, 4..=256).text("resolution"));
 }
 
 fn material(ui: &mut Ui, settings: &mut DemoSettings) {
@@ -111,9 +126,11 @@ fn material(ui: &mut Ui, settings: &mut DemoSettings) {
         settings.choose_preset(chosen);
     }
     let material = &mut settings.material;
-    compliance(ui, &mut material.stretch_compliance, "stretch [m/N]");
-    compliance(ui, &mut material.shear_compliance, "shear [m/N]");
-    compliance(ui, &mut material.bend_compliance, "bend [m/N]");
+    compliance(ui, &mut material.warp_compliance, 1.0, "warp [m/N]");
+    compliance(ui, &mut material.weft_compliance, 1.0, "weft [m/N]");
+    compliance(ui, &mut material.shear_compliance, 1.0, "shear [m/N]");
+    compliance(ui, &mut material.bend_compliance, 1e7, "bend [1/(N m)]");
+    ui.add(Slider::new(&mut material.viscosity, 0.0..=0.5).text("viscosity [m²/s]"));
     ui.add(Slider::new(&mut material.damping, 0.0..=10.0).text("damping [1/s]"));
     ui.add(Slider::new(&mut material.areal_density, 0.02..=2.0).text("density [kg/m²]"));
     ui.add(Slider::new(&mut material.friction, 0.0..=2.0).text("friction"));
@@ -121,8 +138,8 @@ fn material(ui: &mut Ui, settings: &mut DemoSettings) {
 }
 
 /// 0 is rigid; above, orders of magnitude matter.
-fn compliance(ui: &mut Ui, value: &mut f32, text: &str) {
-    let slider = Slider::new(value, 0.0..=10.0)
+fn compliance(ui: &mut Ui, value: &mut f32, most: f32, text: &str) {
+    let slider = Slider::new(value, 0.0..=most)
         .logarithmic(true)
         .smallest_positive(1e-7)
         .custom_formatter(|value, _| {

@@ -270,6 +270,7 @@ fn spawn_cloth(commands: &mut Commands, settings: &DemoSettings, assets: &mut Sc
         SceneCloth { size: scene.size() },
         scene.cloth(settings.resolution),
         settings.material,
+        settings.solver,
         settings.shading,
         scene.pins(),
         scene.transform(),

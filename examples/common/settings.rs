@@ -23,8 +23,10 @@ pub struct DemoSettings {
     pub shading: ClothShading,
     /// Acceleration of gravity, downwards [m/s²].
     pub gravity: f32,
-    /// Substeps of a step.
-    pub substeps: u32,
+    /// How the constraints are solved.
+    pub solver: ClothSolver,
+    /// Substeps of a step, where they are not chosen automatically.
+    pub substeps: Option<u32>,
     /// Iterations of a substep.
     pub iterations: u32,
     /// Whether time stands still.
@@ -97,11 +99,12 @@ impl DemoSettings {
         let mut settings = Self {
             scene,
             resets: 0,
-            resolution: 64,
+            resolution: 128,
             preset: "",
             material: ClothMaterial::default(),
             shading: ClothShading::Smooth,
             gravity: -solver.gravity.y,
+            solver: ClothSolver::default(),
             substeps: solver.substeps,
             iterations: solver.iterations,
             paused: false,

@@ -28,6 +28,8 @@ pub struct Status {
     pub particles: f64,
     /// Constraints of all cloths.
     pub constraints: f64,
+    /// Substeps of the last step.
+    pub substeps: u32,
     /// Mean stretch [%].
     pub mean_stretch: f64,
     /// One sample per frame, the oldest first.
@@ -75,6 +77,7 @@ fn observe(time: Res<Time<Real>>, diagnostics: Res<DiagnosticsStore>, mut status
         .unwrap_or(0.0);
     status.particles = last(&ClothDiagnosticsPlugin::PARTICLES);
     status.constraints = last(&ClothDiagnosticsPlugin::CONSTRAINTS);
+    status.substeps = last(&ClothDiagnosticsPlugin::SUBSTEPS).round() as u32;
     status.mean_stretch = last(&ClothDiagnosticsPlugin::MEAN_STRETCH);
     status.add(Sample {
         time: time.elapsed_secs_f64(),

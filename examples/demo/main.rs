@@ -31,7 +31,7 @@ struct Arguments {
     #[arg(long)]
     scene: Option<SceneKind>,
     /// Particles along the longer side of the cloth
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512), default_value_t = 64)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512), default_value_t = 128)]
     resolution: u32,
     /// Draws to PNG files in this folder instead of a window
     #[arg(long, value_name = "DIR")]
