@@ -16,6 +16,8 @@ fn grabbed(at: usize) -> (App, Entity, Entity) {
         gravity: Vec3::ZERO,
         ..default()
     });
+    // A breath of air: a sheet that hangs in a perfect plane has no side to buckle to when it is pushed together.
+    app.insert_resource(Wind::steady(Vec3::new(0.0, 0.05, 0.3)));
     frames(&mut app, 3);
     let place = particle(&app, cloth, at);
     let place = on_screen(&app, camera, place);

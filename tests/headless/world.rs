@@ -50,7 +50,19 @@ impl Sim {
     }
 
     /// An app with plugins of the caller's choice, which bring `Time`.
+    ///
+    /// The solver is [`ClothSolver::GaussSeidel`] where the environment variable `TAILORBIRD_TEST_SOLVER` is
+    /// `gauss-seidel`, so that all tests can be run for both.
     pub fn of(mut app: App) -> Self {
+        if std::env::var("TAILORBIRD_TEST_SOLVER").is_ok_and(|name| name == "gauss-seidel") {
+            app.add_observer(
+                |added: On<Add, Cloth>, mut solvers: Query<&mut ClothSolver>| {
+                    if let Ok(mut solver) = solvers.get_mut(added.entity) {
+                        *solver = ClothSolver::GaussSeidel;
+                    }
+                },
+            );
+        }
         app.insert_resource(Time::<Fixed>::from_hz(HZ));
         let mut sim = Self {
             app,
@@ -73,7 +85,7 @@ impl Sim {
 
     /// Substeps and iterations.
     pub fn with_passes(self, substeps: u32, iterations: u32) -> Self {
-        self.with_settings(|s| (s.substeps, s.iterations) = (substeps, iterations))
+        self.with_settings(|s| (s.substeps, s.iterations) = (Some(substeps), iterations))
     }
 
     pub fn without_gravity(self) -> Self {
