@@ -39,6 +39,13 @@ impl Points {
         self.x.len()
     }
 
+    /// Whether there are as many as this of each coordinate.
+    pub(crate) fn is_of(&self, len: usize) -> bool {
+        [&self.x, &self.y, &self.z]
+            .into_iter()
+            .all(|values| values.len() == len)
+    }
+
     /// Whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {

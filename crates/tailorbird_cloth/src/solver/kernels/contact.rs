@@ -103,6 +103,19 @@ pub(crate) struct Known<S: Simd> {
 }
 
 impl Touching<'_> {
+    /// Makes sure that all of `len` particles are there.
+    ///
+    /// # Panics
+    /// Where they are not.
+    pub fn check(&self, len: usize) {
+        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
+        let contacts = self
+            .contacts
+            .is_none_or(|(normal, depth)| points(normal) && depth.len() == len);
+        let all = points(self.position) && points(self.previous) && self.inv_mass.len() == len;
+        assert!(all && contacts, "one of each for {len} particles");
+    }
+
     #[inline(always)]
     pub fn known<S: Simd>(self, simd: S, window: Window) -> Known<S> {
         match (self.contacts, self.phase) {

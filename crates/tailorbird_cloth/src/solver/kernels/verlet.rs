@@ -40,6 +40,9 @@ impl Verlet {
     ///
     /// `acceleration` comes in addition to gravity [m/s²]; none is 0. `lost` is what rounding took from the displacement of
     /// each particle in the substep before \[m\], and is replaced by what it takes in this one.
+    ///
+    /// # Panics
+    /// Where the lengths differ.
     pub fn step(
         &self,
         level: Level,
@@ -49,6 +52,13 @@ impl Verlet {
         acceleration: Option<&Points>,
         inv_mass: &[f32],
     ) {
+        let n = inv_mass.len();
+        assert!(
+            [&*position, &*previous, &*lost]
+                .iter()
+                .all(|points| points.is_of(n)),
+            "one of each for {n} particles"
+        );
         let (kept, h2) = (self.kept(), self.seconds * self.seconds);
         let gravity = self.gravity * h2;
         let axes = [
