@@ -16,8 +16,8 @@ use crate::{
     },
 };
 
-/// How far each particle gets from up to four of the pins: the way along the sheet at rest. In storage order. Written by [`build_tethers`]
-/// alone.
+/// How far each particle gets from up to four of the pins: the way along the sheet at rest. In storage order. Written by
+/// [`build_tethers`] alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothTethers {

@@ -123,9 +123,10 @@ impl ClothSolver {
     }
 }
 
-/// Holds the springs: Gauss–Seidel over batches that share no particle, [`ClothStep::iterations`] times.
+/// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
 ///
-/// Batches of compliance 0 are solved as Jakobsen's relaxation, the others as XPBD.
+/// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
+/// relaxation, the others as XPBD.
 pub fn solve_constraints(
     step: Res<ClothStep>,
     mut cloths: Query<

@@ -170,7 +170,7 @@ impl Topology {
         self.rest_positions.len()
     }
 
-    /// What it takes on the heap, shared by all clones \[byte\].
+    /// What a grid takes on the heap, shared by all clones \[byte\]; what only meshes have is not counted.
     pub fn memory_bytes(&self) -> usize {
         let constraints = &self.constraints;
         heap(&self.rest_positions)
