@@ -8,8 +8,7 @@ use bevy_transform::{components::Transform, helper::TransformHelper};
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
-    frame::{ClothFrame, split},
-    material::ClothMaterial,
+    frame::split,
     particles::ClothParticles,
     solver::{
         ClothSolver,
@@ -20,6 +19,7 @@ use crate::{
             sphere::{self, MovingSphere},
         },
     },
+    stages::{ClothStages, ClothStagesItem, Substep},
     step::{ClothStep, for_each_cloth},
 };
 
@@ -209,54 +209,23 @@ pub fn snapshot_colliders(
 pub fn find_contacts(
     step: Res<ClothStep>,
     colliders: Res<ClothColliders>,
-    mut cloths: Query<
-        (
-            &ClothFrame,
-            &ClothMaterial,
-            &ClothSolver,
-            &mut ClothParticles,
-        ),
-        With<Cloth>,
-    >,
+    mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_cloth!(
-        step,
-        cloths,
-        |(frame, material, solver, mut particles): (
-            &ClothFrame,
-            &ClothMaterial,
-            &ClothSolver,
-            Mut<ClothParticles>
-        )| {
-            if *solver != ClothSolver::Chains || colliders.is_empty() {
-                particles.contacts.any = false;
-                return;
-            }
-            let len = particles.len();
-            particles.contacts.reset(len);
-            for collider in &colliders.colliders {
-                collider.collide(Phase::Approach, &step, frame, material, &mut particles);
-            }
-        }
-    );
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        colliders.approach(&substep, &mut cloth);
+    });
 }
 
 /// Keeps particles out of the spheres.
 pub fn collide_sphere(
     step: Res<ClothStep>,
     colliders: Res<ClothColliders>,
-    mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_cloth!(step, cloths, |(frame, material, mut particles): (
-        &ClothFrame,
-        &ClothMaterial,
-        Mut<ClothParticles>
-    )| {
-        for collider in &colliders.colliders {
-            if let ColliderShape::Sphere { .. } = collider.shape {
-                collider.collide(Phase::Final, &step, frame, material, &mut particles);
-            }
-        }
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        colliders.collide_spheres(&substep, &mut cloth);
     });
 }
 
@@ -264,32 +233,53 @@ pub fn collide_sphere(
 pub fn collide_half_space(
     step: Res<ClothStep>,
     colliders: Res<ClothColliders>,
-    mut cloths: Query<(&ClothFrame, &ClothMaterial, &mut ClothParticles), With<Cloth>>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_cloth!(step, cloths, |(frame, material, mut particles): (
-        &ClothFrame,
-        &ClothMaterial,
-        Mut<ClothParticles>
-    )| {
-        for collider in &colliders.colliders {
-            if let ColliderShape::HalfSpace = collider.shape {
-                collider.collide(Phase::Final, &step, frame, material, &mut particles);
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        colliders.collide_half_spaces(&substep, &mut cloth);
+    });
+}
+
+impl ClothColliders {
+    /// What [`find_contacts`] does for one cloth.
+    pub(crate) fn approach(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
+        let particles = &mut *cloth.particles;
+        if *cloth.solver != ClothSolver::Chains || self.is_empty() {
+            particles.contacts.any = false;
+            return;
+        }
+        let len = particles.len();
+        particles.contacts.reset(len);
+        for collider in &self.colliders {
+            collider.collide(Phase::Approach, substep, cloth);
+        }
+    }
+
+    /// What [`collide_sphere`] does for one cloth.
+    pub(crate) fn collide_spheres(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
+        for collider in &self.colliders {
+            if let ColliderShape::Sphere { .. } = collider.shape {
+                collider.collide(Phase::Final, substep, cloth);
             }
         }
-    });
+    }
+
+    /// What [`collide_half_space`] does for one cloth.
+    pub(crate) fn collide_half_spaces(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
+        for collider in &self.colliders {
+            if let ColliderShape::HalfSpace = collider.shape {
+                collider.collide(Phase::Final, substep, cloth);
+            }
+        }
+    }
 }
 
 impl MovingCollider {
     /// Keeps the particles of one cloth out.
-    fn collide(
-        &self,
-        phase: Phase,
-        step: &ClothStep,
-        frame: &ClothFrame,
-        material: &ClothMaterial,
-        particles: &mut ClothParticles,
-    ) {
-        let (from, to) = fractions(step);
+    fn collide(&self, phase: Phase, substep: &Substep, cloth: &mut ClothStagesItem) {
+        let (frame, material) = (&*cloth.frame, cloth.material);
+        let (from, to) = substep.fractions();
         let (center_from, center_to) = (
             frame.to_frame(self.center(from)),
             frame.to_frame(self.center(to)),
@@ -302,7 +292,7 @@ impl MovingCollider {
             grabbed,
             contacts,
             ..
-        } = particles;
+        } = &mut *cloth.particles;
         let len = inv_mass.len();
         let known = contacts.depth.len() == len && (phase == Phase::Approach || contacts.any);
         let touching = Touching {
@@ -324,12 +314,13 @@ impl MovingCollider {
                 let sphere = MovingSphere {
                     from: center_from,
                     to: center_to,
-                    rotation: frame
-                        .vector_to_frame(turned.to_scaled_axis() / step.substeps() as f32),
+                    rotation: frame.vector_to_frame(turned.to_scaled_axis() / substep.count as f32),
                     radius: radius + material.margin(),
                     friction,
                 };
-                let any = sphere::collide_all(step.level(), &sphere, touching, 0..len);
+                let any = substep.crew.any(0..len, |range| {
+                    sphere::collide_all(substep.level, &sphere, touching, range)
+                });
                 if let Some(i) = held {
                     sphere::collide_one(&sphere, i, position, previous_position);
                 }
@@ -344,7 +335,9 @@ impl MovingCollider {
                     margin: material.margin(),
                     friction,
                 };
-                let any = half_space::collide_all(step.level(), &plane, touching, 0..len);
+                let any = substep.crew.any(0..len, |range| {
+                    half_space::collide_all(substep.level, &plane, touching, range)
+                });
                 if let Some(i) = held {
                     half_space::collide_one(&plane, i, position, previous_position);
                 }
@@ -353,12 +346,6 @@ impl MovingCollider {
         };
         contacts.any |= any && phase == Phase::Approach;
     }
-}
-
-/// The parts of the step at which the substep in progress starts and ends.
-fn fractions(step: &ClothStep) -> (f32, f32) {
-    let to = step.fraction();
-    (to - 1.0 / step.substeps().max(1) as f32, to)
 }
 
 /// Two surfaces rub with the geometric mean of their frictions: if either is slippery, so is the pair.

@@ -10,6 +10,7 @@ use crate::{
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     particles::ClothParticles,
     solver::kernels::rigid,
+    stages::{ClothStages, ClothStagesItem, Substep},
     step::{ClothStep, for_each_cloth},
 };
 
@@ -157,28 +158,27 @@ pub fn prepare_frames(
 }
 
 /// Moves the frames on by one substep, and expresses the free particles in the moved frame.
-pub fn advance_frames(
-    step: Res<ClothStep>,
-    mut cloths: Query<(&mut ClothFrame, &mut ClothParticles), With<Cloth>>,
-) {
-    let fraction = step.fraction();
-    for_each_cloth!(step, cloths, |(mut frame, mut particles): (
-        Mut<ClothFrame>,
-        Mut<ClothParticles>
-    )| {
-        if !frame.is_moving() {
+pub fn advance_frames(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        cloth.frame.advance(&substep, &mut cloth.particles);
+    });
+}
+
+impl ClothFrame {
+    /// Moves on by one substep.
+    pub(crate) fn advance(&mut self, substep: &Substep, particles: &mut ClothParticles) {
+        if !self.is_moving() {
             particles.hold_still();
             return;
         }
-        let to = if step.substeps_left() == 1 {
-            frame.end
+        let to = if substep.left() == 1 {
+            self.end
         } else {
+            let (_, fraction) = substep.fractions();
             Isometry3d::new(
-                frame
-                    .start
-                    .translation
-                    .lerp(frame.end.translation, fraction),
-                frame.start.rotation.slerp(frame.end.rotation, fraction),
+                self.start.translation.lerp(self.end.translation, fraction),
+                self.start.rotation.slerp(self.end.rotation, fraction),
             )
         };
         let ClothParticles {
@@ -188,9 +188,9 @@ pub fn advance_frames(
             acceleration,
             inv_mass,
             ..
-        } = &mut *particles;
-        let from = frame.current;
-        frame.current = to;
+        } = particles;
+        let from = self.current;
+        self.current = to;
         let inverse: Quat = to.rotation.inverse();
         // The difference of the translations first: it is small even where they are large.
         let shift = inverse * Vec3::from(from.translation - to.translation);
@@ -198,5 +198,5 @@ pub fn advance_frames(
         rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
         rigid::rotate(rotation, lost_displacement);
         rigid::rotate(rotation, acceleration);
-    });
+    }
 }

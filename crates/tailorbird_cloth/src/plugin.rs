@@ -22,6 +22,7 @@ use crate::{
     normals::recompute_normals,
     pins::apply_pins,
     prelude::*,
+    runner::{OwnStages, game_has_stages, simulate_cloths},
     schedule::run_substeps,
     solver::{solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_runs},
@@ -88,11 +89,15 @@ impl Plugin for ClothPlugin {
                 )
                     .chain()
                     .in_set(ClothSystems::Prepare),
-                run_substeps
-                    .run_if(step_runs)
-                    .in_set(ClothSystems::Simulate)
-                    // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
-                    .ambiguous_with(signal_message_update_system),
+                (
+                    simulate_cloths.run_if(step_runs.and_then(not(game_has_stages))),
+                    run_substeps
+                        .run_if(step_runs.and_then(game_has_stages))
+                        // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
+                        .ambiguous_with(signal_message_update_system),
+                )
+                    .chain()
+                    .in_set(ClothSystems::Simulate),
                 (
                     guard_finite.run_if(step_runs),
                     recompute_normals,
@@ -132,6 +137,8 @@ impl Plugin for ClothPlugin {
                         .in_set(ClothSubstepSystems::Collide),
                 ),
             );
+        let own = app.get_schedule(ClothSubstep).map(OwnStages::new);
+        app.insert_resource(own.unwrap_or_default());
     }
 }
 

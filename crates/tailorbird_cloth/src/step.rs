@@ -8,8 +8,13 @@ use fearless_simd::Level;
 use tracing::error;
 
 use crate::{
-    cloth::Cloth, particles::ClothParticles, settings::ClothSettings, solver::ClothSolver,
-    topology::ClothTopology,
+    cloth::Cloth,
+    crew::Crew,
+    particles::ClothParticles,
+    settings::ClothSettings,
+    solver::ClothSolver,
+    stages::Substep,
+    topology::{ClothTopology, Topology},
 };
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
@@ -58,7 +63,8 @@ impl ClothStep {
         self.seconds / self.substeps.max(1) as f32
     }
 
-    /// How many substeps the step has.
+    /// How many substeps the cloth takes that takes most; all do where a game has systems of its own in
+    /// [`ClothSubstep`](crate::schedule::ClothSubstep).
     pub fn substeps(&self) -> u32 {
         self.substeps
     }
@@ -108,9 +114,33 @@ impl ClothStep {
         self.level.0
     }
 
-    /// Whether it pays to share the cloths out to threads.
+    /// Whether it pays to share several cloths out to threads.
     pub fn parallel(&self) -> bool {
         self.parallel
+    }
+
+    /// How many substeps this cloth takes where it need not keep step with others.
+    pub(crate) fn substeps_of(&self, solver: ClothSolver, topology: &Topology) -> u32 {
+        let wanted = self.fixed_substeps;
+        wanted.unwrap_or_else(|| solver.substeps(topology)).max(1)
+    }
+
+    /// The substep `index` of `count`.
+    pub(crate) fn nth_of<'a>(&self, index: u32, count: u32, crew: Crew<'a>) -> Substep<'a> {
+        Substep {
+            level: self.level.0,
+            seconds: self.seconds / count.max(1) as f32,
+            index,
+            count: count.max(1),
+            iterations: self.iterations,
+            gravity: self.gravity,
+            crew,
+        }
+    }
+
+    /// The substep in progress, of those that all cloths take together.
+    pub(crate) fn in_progress(&self) -> Substep<'static> {
+        self.nth_of(self.substep, self.substeps, Crew::ALONE)
     }
 }
 
@@ -173,12 +203,10 @@ pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
     cloths: Query<(&ClothSolver, &ClothTopology), With<Cloth>>,
 ) {
-    step.substeps = step.fixed_substeps.unwrap_or_else(|| {
-        let needed = cloths
-            .iter()
-            .map(|(solver, topology)| solver.substeps(topology));
-        needed.max().unwrap_or(1)
-    });
+    let needed = cloths
+        .iter()
+        .map(|(solver, topology)| step.substeps_of(*solver, topology));
+    step.substeps = needed.max().unwrap_or(1);
 }
 
 /// Calls `f` for each item of a query, on several threads where [`ClothStep::parallel`] says that it pays.

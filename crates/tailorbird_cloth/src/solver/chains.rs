@@ -11,6 +11,7 @@ use super::kernels::{
     viscosity::{self, RigidMotion},
 };
 use crate::{
+    crew::Crew,
     material::ClothMaterial,
     particles::ClothParticles,
     tethers::ClothTethers,
@@ -29,6 +30,7 @@ const STRETCH_ROOM: f32 = 20.0;
 /// One pass over the constraints.
 pub(crate) struct Pass<'a> {
     pub level: Level,
+    pub crew: Crew<'a>,
     pub topology: &'a Topology,
     pub material: &'a ClothMaterial,
     /// Length of the substep \[s\].
@@ -42,8 +44,7 @@ pub(crate) struct Pass<'a> {
 impl Pass<'_> {
     /// α̃ = α/h² [1/kg].
     pub(super) fn alpha_tilde(&self, compliance: f32) -> f32 {
-        // What is not finite would turn into NaN in the product with 0.
-        (compliance.max(0.0) / (self.seconds * self.seconds)).min(f32::MAX)
+        super::alpha_tilde(compliance, self.seconds)
     }
 
     /// The lines at distance `across` from each other, whose particles are `along` apart \[m\].
@@ -112,13 +113,10 @@ impl Pass<'_> {
             particles.position.set(i, reached);
         }
         let all = particles.len();
-        tether::solve(
-            self.level,
-            sheet(particles, [all, 1]),
-            &tethers,
-            slack,
-            0..all,
-        );
+        let line = sheet(particles, [all, 1]);
+        self.crew.share(0..all, |range| {
+            tether::solve(self.level, line, &tethers, slack, range);
+        });
         self.bend(topology, particles);
         if let Some(lattice) = &topology.lattice {
             self.solve_lattice(lattice, particles);
@@ -137,17 +135,28 @@ impl Pass<'_> {
             alpha_tilde: self.alpha_tilde(self.material.shear_compliance),
             rising_first: odd,
         };
-        lattice::solve_shear(level, sheet, shear, 0..rows);
-        lattice::solve_shear(level, sheet, shear, 1..rows);
+        // Parts begin at even distances from the first.
+        for first in [0, 1] {
+            self.crew.share(first..rows, |rows| {
+                lattice::solve_shear(level, sheet, shear, rows);
+            });
+        }
 
         let weft = self.line(self.material.weft_compliance, dx, dy);
         let warp = self.line(self.material.warp_compliance, dy, dx);
+        let solve_columns = || {
+            self.crew.share(0..columns, |columns| {
+                lattice::solve_columns(level, sheet, warp, columns);
+            });
+        };
         if odd {
-            lattice::solve_columns(level, sheet, warp, 0..columns);
+            solve_columns();
         }
-        lattice::solve_rows(level, sheet, weft, 0..rows);
+        self.crew.share(0..rows, |rows| {
+            lattice::solve_rows(level, sheet, weft, rows);
+        });
         if !odd {
-            lattice::solve_columns(level, sheet, warp, 0..columns);
+            solve_columns();
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The systems of a substep; their arithmetic is in [`kernels`].
 
 pub(crate) mod chains;
+mod classic;
 mod fabric;
 pub mod kernels;
 #[cfg(test)]
@@ -11,84 +12,12 @@ use bevy_reflect::prelude::*;
 
 use crate::{
     cloth::Cloth,
-    frame::ClothFrame,
-    material::ClothMaterial,
     particles::ClothParticles,
+    stages::{ClothStages, ClothStagesItem, Substep},
     step::{ClothStep, for_each_cloth},
-    tethers::ClothTethers,
-    topology::{ClothTopology, Topology, constraints::ConstraintFamily},
+    topology::Topology,
 };
-use kernels::{distance, verlet::Verlet};
-
-/// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
-pub fn verlet_step(
-    step: Res<ClothStep>,
-    mut cloths: Query<
-        (
-            &ClothTopology,
-            &ClothMaterial,
-            &ClothSolver,
-            &ClothFrame,
-            &mut ClothParticles,
-        ),
-        With<Cloth>,
-    >,
-) {
-    for_each_cloth!(step, cloths, |(
-        topology,
-        material,
-        solver,
-        frame,
-        mut particles,
-    ): (
-        &ClothTopology,
-        &ClothMaterial,
-        &ClothSolver,
-        &ClothFrame,
-        Mut<ClothParticles>
-    )| {
-        let seconds = step.substep_seconds();
-        if *solver == ClothSolver::Chains {
-            let before = particles.substep_seconds;
-            chains::damp(step.level(), topology, material, before, &mut particles);
-        }
-        let verlet = Verlet {
-            seconds,
-            seconds_before: particles.substep_seconds,
-            damping: if material.damping >= 0.0 {
-                material.damping
-            } else {
-                0.0
-            },
-            gravity: frame.vector_to_frame(step.gravity()),
-        };
-        let ClothParticles {
-            position,
-            previous_position,
-            lost_displacement,
-            acceleration,
-            inv_mass,
-            pins,
-            ..
-        } = &mut *particles;
-        let left = step.substeps_left();
-        verlet.step(
-            step.level(),
-            position,
-            previous_position,
-            lost_displacement,
-            (!acceleration.is_empty()).then_some(&*acceleration),
-            inv_mass,
-        );
-        for pin in pins.iter() {
-            let i = pin.particle as usize;
-            let from = position.get(i);
-            position.set(i, from + (pin.target - from) / left as f32);
-        }
-        particles.move_grabbed(topology, left, seconds);
-        particles.substep_seconds = seconds;
-    });
-}
+use kernels::verlet::Verlet;
 
 /// How the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
@@ -123,100 +52,96 @@ impl ClothSolver {
     }
 }
 
+/// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
+pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        integrate(&substep, &mut cloth);
+    });
+}
+
 /// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
 ///
 /// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
 /// relaxation, the others as XPBD.
-pub fn solve_constraints(
-    step: Res<ClothStep>,
-    mut cloths: Query<
-        (
-            &ClothTopology,
-            &ClothMaterial,
-            &ClothSolver,
-            &ClothTethers,
-            &mut ClothParticles,
-        ),
-        With<Cloth>,
-    >,
-) {
-    for_each_cloth!(step, cloths, |(
-        topology,
-        material,
-        solver,
-        tethers,
-        mut particles,
-    ): (
-        &ClothTopology,
-        &ClothMaterial,
-        &ClothSolver,
-        &ClothTethers,
-        Mut<ClothParticles>
-    )| {
-        if *solver == ClothSolver::Chains {
-            for k in 0..step.iterations() {
+pub fn solve_constraints(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    let substep = step.in_progress();
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        solve(&substep, &mut cloth);
+    });
+}
+
+/// Moves the particles of one cloth.
+pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
+    let (topology, material) = (cloth.topology, cloth.material);
+    let particles = &mut *cloth.particles;
+    let seconds = substep.seconds;
+    if *cloth.solver == ClothSolver::Chains {
+        let before = particles.substep_seconds;
+        chains::damp(substep.level, topology, material, before, particles);
+    }
+    let verlet = Verlet {
+        seconds,
+        seconds_before: particles.substep_seconds,
+        damping: if material.damping >= 0.0 {
+            material.damping
+        } else {
+            0.0
+        },
+        gravity: cloth.frame.vector_to_frame(substep.gravity),
+    };
+    let ClothParticles {
+        position,
+        previous_position,
+        lost_displacement,
+        acceleration,
+        inv_mass,
+        pins,
+        ..
+    } = particles;
+    verlet.step(
+        substep.level,
+        position,
+        previous_position,
+        lost_displacement,
+        (!acceleration.is_empty()).then_some(&*acceleration),
+        inv_mass,
+    );
+    for pin in pins.iter() {
+        let i = pin.particle as usize;
+        let from = position.get(i);
+        position.set(i, from + (pin.target - from) / substep.left() as f32);
+    }
+    particles.move_grabbed(topology, substep.left(), seconds);
+    particles.substep_seconds = seconds;
+}
+
+/// Holds the constraints of one cloth.
+pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
+    let (topology, material) = (cloth.topology, cloth.material);
+    match cloth.solver {
+        ClothSolver::Chains => {
+            for k in 0..substep.iterations {
                 let pass = chains::Pass {
-                    level: step.level(),
+                    level: substep.level,
+                    crew: substep.crew,
                     topology,
                     material,
-                    seconds: step.substep_seconds(),
-                    gravity: step.gravity().length(),
-                    number: step.substep() + k,
+                    seconds: substep.seconds,
+                    gravity: substep.gravity.length(),
+                    number: substep.index + k,
                 };
-                pass.solve(tethers, &mut particles);
-            }
-            return;
-        }
-        let h = step.substep_seconds();
-        let cell_area = topology.cell_area();
-        let alpha_tilde = |family| {
-            let compliance = match family {
-                ConstraintFamily::Stretch => {
-                    0.5 * (material.warp_compliance + material.weft_compliance)
-                }
-                ConstraintFamily::Shear => material.shear_compliance,
-                ConstraintFamily::Bend => material.bend_compliance * cell_area,
-            };
-            // What is not finite would turn into NaN in the product with a multiplier of 0.
-            (compliance.max(0.0) / (h * h)).min(f32::MAX)
-        };
-        let constraints = &topology.constraints;
-        let ClothParticles {
-            position,
-            inv_mass,
-            lambda,
-            ..
-        } = &mut *particles;
-        if position.is_empty() {
-            return;
-        }
-        if ConstraintFamily::ALL
-            .iter()
-            .any(|&family| alpha_tilde(family) > 0.0)
-        {
-            lambda.clear();
-            lambda.resize(constraints.len(), 0.0);
-        }
-        for _ in 0..step.iterations() {
-            for batch in &constraints.batches {
-                let range = batch.range.clone();
-                let ends = &constraints.ends[range.clone()];
-                let rest_lengths = &constraints.rest_lengths[range.clone()];
-                let alpha_tilde = alpha_tilde(batch.family);
-                if alpha_tilde > 0.0 {
-                    let lambda = &mut lambda[range];
-                    distance::solve_compliant(
-                        ends,
-                        rest_lengths,
-                        alpha_tilde,
-                        inv_mass,
-                        lambda,
-                        position,
-                    );
-                } else {
-                    distance::solve_rigid(ends, rest_lengths, inv_mass, position);
-                }
+                pass.solve(cloth.tethers, &mut cloth.particles);
             }
         }
-    });
+        ClothSolver::GaussSeidel => {
+            classic::solve(substep, topology, material, &mut cloth.particles);
+        }
+    }
+}
+
+/// α̃ = α/h² [1/kg] of a compliance [m/N].
+fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
+    // What is not finite would turn into NaN in the product with a multiplier of 0.
+    (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
 }

@@ -2,6 +2,7 @@
 
 use std::{env, process::Command};
 
+use bevy_ecs::prelude::*;
 use bevy_math::UVec2;
 use tailorbird_cloth::prelude::*;
 
@@ -48,21 +49,51 @@ fn as_a_child() {
     let Ok(threads) = env::var(THREADS) else {
         return;
     };
-    for scene in [
-        Scene::hang(UVec2::new(17, 33)),
-        Scene::drape(UVec2::new(17, 33)),
+    let (small, large) = (UVec2::new(17, 33), UVec2::new(150, 131));
+    for (scene, sheets) in [
+        // Enough to be shared out.
+        (Scene::hang(small), 32),
+        (Scene::drape(small), 32),
+        // Large enough for several threads at one.
+        (Scene::hang(large), 1),
+        (Scene::drape(large), 2),
     ] {
-        let mut sheets = Sheet::new(&Scene {
+        let mut app = Sheet::new(&Scene {
             threads: threads.parse().ok(),
-            // Enough particles to be shared out.
-            sheets: 32,
+            sheets,
             ..scene
         });
-        sheets.steps(60);
-        assert!(sheets.app.world().resource::<ClothStep>().parallel());
-        println!("{MARK}{:016x}", sheets.hash());
+        app.steps(60);
+        let parallel = app.app.world().resource::<ClothStep>().parallel();
+        assert_eq!(parallel, sheets > 1);
+        println!("{MARK}{:016x}", app.hash());
     }
 }
+
+/// A game's systems between the stages run all cloths through each stage together; otherwise each goes through all substeps
+/// by itself.
+#[test]
+fn systems_of_a_game_between_the_stages_change_nothing() {
+    let size = UVec2::new(17, 33);
+    for scene in [Scene::hang(size), Scene::drape(size)] {
+        let hash = |with_system: bool| {
+            let mut sheet = Sheet::new(&scene);
+            sheet.app.init_resource::<Calls>();
+            if with_system {
+                let count = |mut calls: ResMut<Calls>| calls.0 += 1;
+                sheet.app.add_systems(ClothSubstep, count);
+            }
+            sheet.steps(60);
+            let calls = sheet.app.world().resource::<Calls>().0;
+            assert_eq!(calls, if with_system { 60 * 8 } else { 0 });
+            sheet.hash()
+        };
+        assert_eq!(hash(true), hash(false));
+    }
+}
+
+#[derive(Resource, Default)]
+struct Calls(u32);
 
 #[test]
 fn every_number_of_threads_gives_the_same_bits() {
@@ -80,7 +111,7 @@ fn every_number_of_threads_gives_the_same_bits() {
             .collect()
     };
     let one = bits(1);
-    assert_eq!(one.len(), 2);
+    assert_eq!(one.len(), 4);
     for threads in [2, 4] {
         assert_eq!(bits(threads), one, "{threads} threads");
     }

@@ -4,6 +4,8 @@
 //! (normal and depth), without friction; the lines then move them along the surface alone. After it, what is left is
 //! pushed out, and friction acts with the depth of both times, as it is the whole push that presses the two together.
 
+use std::ops::Range;
+
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
@@ -103,17 +105,21 @@ pub(crate) struct Known<S: Simd> {
 }
 
 impl Touching<'_> {
-    /// Makes sure that all of `len` particles are there.
+    /// Makes sure that there is one of each for all particles, and that a range lies within.
     ///
     /// # Panics
     /// Where they are not.
-    pub fn check(&self, len: usize) {
+    pub fn check(&self, range: &Range<usize>) {
+        let len = self.inv_mass.len();
         let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
         let contacts = self
             .contacts
             .is_none_or(|(normal, depth)| points(normal) && depth.len() == len);
-        let all = points(self.position) && points(self.previous) && self.inv_mass.len() == len;
-        assert!(all && contacts, "one of each for {len} particles");
+        let all = points(self.position) && points(self.previous) && range.end <= len;
+        assert!(
+            all && contacts,
+            "one of each for {len} particles, {range:?} of them"
+        );
     }
 
     #[inline(always)]

@@ -75,7 +75,7 @@ pub(crate) fn collide_all(
     particles: Touching,
     range: Range<usize>,
 ) -> bool {
-    particles.check(range.end);
+    particles.check(&range);
     dispatch!(level, simd => collide_all_with(simd, sphere, particles, range))
 }
 

@@ -1,0 +1,72 @@
+//! The stages of a substep, for one cloth at a time.
+
+use bevy_ecs::query::QueryData;
+use bevy_math::Vec3;
+use fearless_simd::Level;
+
+use crate::{
+    collider::ClothColliders,
+    crew::Crew,
+    frame::ClothFrame,
+    material::ClothMaterial,
+    particles::ClothParticles,
+    solver::{self, ClothSolver},
+    tethers::ClothTethers,
+    topology::ClothTopology,
+};
+
+/// A substep of one cloth: what its stages are told.
+#[derive(Clone, Copy)]
+pub(crate) struct Substep<'a> {
+    /// The instruction set that the kernels use.
+    pub level: Level,
+    /// Its length \[s\].
+    pub seconds: f32,
+    /// Which it is, from 0.
+    pub index: u32,
+    /// How many there are.
+    pub count: u32,
+    /// Passes over the constraints.
+    pub iterations: u32,
+    /// Acceleration of every particle [m/s²], in world axes.
+    pub gravity: Vec3,
+    /// Who works on it.
+    pub crew: Crew<'a>,
+}
+
+impl Substep<'_> {
+    /// How many are left, this one included.
+    pub fn left(&self) -> u32 {
+        self.count - self.index
+    }
+
+    /// The parts of the step that have passed at its start and at its end, 0 to 1.
+    pub fn fractions(&self) -> (f32, f32) {
+        let to = (self.index + 1) as f32 / self.count as f32;
+        (to - 1.0 / self.count as f32, to)
+    }
+}
+
+/// What the stages of a substep need of a cloth. Opaque: the cloth's components are what to read.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub struct ClothStages {
+    pub(crate) topology: &'static ClothTopology,
+    pub(crate) material: &'static ClothMaterial,
+    pub(crate) solver: &'static ClothSolver,
+    pub(crate) tethers: &'static ClothTethers,
+    pub(crate) frame: &'static mut ClothFrame,
+    pub(crate) particles: &'static mut ClothParticles,
+}
+
+impl ClothStagesItem<'_, '_> {
+    /// All stages of a substep, in the order of [`ClothSubstep`](crate::schedule::ClothSubstep).
+    pub(crate) fn run(&mut self, substep: &Substep, colliders: &ClothColliders) {
+        self.frame.advance(substep, &mut self.particles);
+        solver::integrate(substep, self);
+        colliders.approach(substep, self);
+        solver::solve(substep, self);
+        colliders.collide_spheres(substep, self);
+        colliders.collide_half_spaces(substep, self);
+    }
+}
