@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, ValueEnum};
 use tailorbird_cloth::prelude::*;
 
-/// Measures time per step, stretch and memory of cloth; 300 steps at 60 Hz each.
+/// Measures time per step, stretch and memory of cloth, at 60 Hz.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "bench", version)]
 pub struct Args {
@@ -17,7 +17,11 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4096))]
     pub size: Option<u32>,
 
-    /// Threads of the compute pool [default: one for each core]; a single sheet has one.
+    /// Steps of each measurement [default: 300, of flags 60].
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u32).range(1..))]
+    pub steps: Option<u32>,
+
+    /// Threads of the compute pool [default: one for each core]; a sheet of less than 16,384 particles has one.
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 

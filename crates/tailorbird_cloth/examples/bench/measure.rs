@@ -15,9 +15,6 @@ use super::{
     scene::{Scene, Setup},
 };
 
-/// 5 s.
-const STEPS: u32 = 300;
-
 /// In the last quarter each tenth step is looked at.
 const EVERY: u32 = 10;
 
@@ -26,9 +23,10 @@ const BUILDS: usize = 5;
 
 /// Runs a setup. Stretch is averaged over the steps that are looked at, the largest is that of all.
 pub fn measure(setup: &Setup, args: &Args) -> Record {
+    let total = args.steps.unwrap_or(setup.scene.steps());
     let topology_ms = topology_ms(&setup.cloth());
     let mut app = setup.app(args);
-    let mut times = Vec::with_capacity(STEPS as usize);
+    let mut times = Vec::with_capacity(total as usize);
     let mut looks = 0;
     let (mut mean, mut p99, mut max, mut compression) = (0.0, 0.0, 0.0_f64, 0.0);
     let mut cloths = app.world_mut().query::<(
@@ -37,10 +35,10 @@ pub fn measure(setup: &Setup, args: &Args) -> Record {
         &ClothNormals,
         &ClothTethers,
     )>();
-    for step in 1..=STEPS {
+    for step in 1..=total {
         app.update();
         times.push(app.world().resource::<ClothStepTime>().total);
-        if step > STEPS - STEPS / 4 && step.is_multiple_of(EVERY) {
+        if step > total - total / 4 && step.is_multiple_of(EVERY) {
             for (particles, topology, ..) in cloths.iter(app.world()) {
                 let stretch = particles.stretch(topology);
                 looks += 1;

@@ -38,6 +38,14 @@ impl Scene {
             Self::Flags => "flags",
         }
     }
+
+    /// 5 s; 1 s of flags, as a step of a thousand takes its time.
+    pub fn steps(self) -> u32 {
+        match self {
+            Self::Hang | Self::Drape | Self::DrapePinned => 300,
+            Self::Flags => 60,
+        }
+    }
 }
 
 /// One measurement.
