@@ -7,6 +7,7 @@ use bevy_reflect::prelude::*;
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
+    sleep::ClothRest,
     solver::kernels::range::range,
     step::{ClothStep, for_each_cloth},
 };
@@ -32,13 +33,14 @@ impl ClothBounds {
 /// Computes the boxes of all cloths.
 pub fn update_bounds(
     step: Res<ClothStep>,
-    mut cloths: Query<(&ClothParticles, &mut ClothBounds), With<Cloth>>,
+    mut cloths: Query<(&ClothRest, &ClothParticles, &mut ClothBounds), With<Cloth>>,
 ) {
-    for_each_cloth!(step, cloths, |(particles, mut bounds): (
+    for_each_cloth!(step, cloths, |(rest, particles, mut bounds): (
+        &ClothRest,
         &ClothParticles,
         Mut<ClothBounds>
     )| {
-        if particles.is_empty() {
+        if rest.is_asleep() || particles.is_empty() {
             return;
         }
         let range = |values: &[f32], ends| range(step.level(), values, ends);

@@ -1,5 +1,7 @@
 //! Solid things that cloth collides with.
 
+mod near;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
@@ -20,7 +22,7 @@ use crate::{
         },
     },
     stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_cloth},
+    step::{ClothStep, for_each_awake},
 };
 
 /// A solid thing that every cloth collides with. It follows the entity's `Transform`, from step to step without gaps, and
@@ -212,7 +214,7 @@ pub fn find_contacts(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         colliders.approach(&substep, &mut cloth);
     });
 }
@@ -224,7 +226,7 @@ pub fn collide_sphere(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         colliders.collide_spheres(&substep, &mut cloth);
     });
 }
@@ -236,7 +238,7 @@ pub fn collide_half_space(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         colliders.collide_half_spaces(&substep, &mut cloth);
     });
 }

@@ -209,6 +209,8 @@ pub enum ErrorSource {
     Collider,
     /// [`ClothForces`](crate::forces::ClothForces).
     Forces,
+    /// [`ClothSleep`](crate::sleep::ClothSleep).
+    Sleep,
     /// [`ClothParticles`](crate::particles::ClothParticles).
     State,
 }

@@ -11,7 +11,7 @@ use crate::{
     particles::ClothParticles,
     solver::kernels::rigid,
     stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_cloth},
+    step::{ClothStep, for_each_awake},
 };
 
 /// The rigid frame that a cloth's particles live in: translation and rotation of the entity. Scale is part of the rest
@@ -160,7 +160,7 @@ pub fn prepare_frames(
 /// Moves the frames on by one substep, and expresses the free particles in the moved frame.
 pub fn advance_frames(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         cloth.frame.advance(&substep, &mut cloth.particles);
     });
 }

@@ -43,6 +43,7 @@ pub mod query;
 mod runner;
 pub mod schedule;
 pub mod settings;
+pub mod sleep;
 pub mod solver;
 pub mod stages;
 pub mod step;
@@ -70,6 +71,7 @@ pub mod prelude {
         query::ClothHit,
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
+        sleep::{ClothRest, ClothSleep},
         solver::ClothSolver,
         step::ClothStep,
         topology::ClothTopology,

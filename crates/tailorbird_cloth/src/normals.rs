@@ -8,6 +8,7 @@ use crate::{
     cloth::Cloth,
     particles::ClothParticles,
     points::Points,
+    sleep::ClothRest,
     solver::kernels::normals,
     step::{ClothStep, for_each_cloth},
     topology::ClothTopology,
@@ -81,6 +82,7 @@ pub fn recompute_normals(
     step: Res<ClothStep>,
     mut cloths: Query<
         (
+            &ClothRest,
             &ClothTopology,
             &ClothShading,
             &ClothParticles,
@@ -90,11 +92,13 @@ pub fn recompute_normals(
     >,
 ) {
     for_each_cloth!(step, cloths, |(
+        rest,
         topology,
         shading,
         particles,
         mut normals,
     ): (
+        &ClothRest,
         &ClothTopology,
         &ClothShading,
         &ClothParticles,
@@ -110,6 +114,9 @@ pub fn recompute_normals(
             revision,
         } = &mut *normals;
         let fresh = *revision != topology.revision || shading_before != shading;
+        if rest.is_asleep() && !fresh {
+            return;
+        }
         if fresh {
             *revision = topology.revision;
             *shading_before = *shading;

@@ -24,6 +24,7 @@ use crate::{
     prelude::*,
     runner::{OwnStages, game_has_stages, simulate_cloths},
     schedule::run_substeps,
+    sleep::{rest_cloths, wake_cloths},
     solver::{solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_runs},
     tethers::build_tethers,
@@ -83,7 +84,9 @@ impl Plugin for ClothPlugin {
                     apply_pins,
                     build_tethers,
                     plan_substeps,
-                    (snapshot_colliders, apply_grab, apply_forces, apply_wind)
+                    snapshot_colliders.run_if(step_runs),
+                    wake_cloths,
+                    (apply_grab, apply_forces, apply_wind)
                         .chain()
                         .run_if(step_runs),
                 )
@@ -102,6 +105,7 @@ impl Plugin for ClothPlugin {
                     guard_finite.run_if(step_runs),
                     recompute_normals,
                     update_bounds,
+                    rest_cloths.run_if(step_runs),
                     stop_clock,
                 )
                     .chain()
@@ -151,6 +155,8 @@ fn register_types(app: &mut App) {
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
         .register_type::<ClothSolver>()
+        .register_type::<ClothSleep>()
+        .register_type::<ClothRest>()
         .register_type::<crate::tethers::ClothTethers>()
         .register_type::<crate::settings::InstructionSet>()
         .register_type::<ClothTopology>()

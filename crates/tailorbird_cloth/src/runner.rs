@@ -18,8 +18,9 @@ use crate::{
     diagnostics::ClothStepTime,
     particles::ClothParticles,
     schedule::ClothSubstep,
+    sleep::ClothRest,
     stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_cloth},
+    step::{ClothStep, for_each_awake},
 };
 
 /// From this many particles on a cloth is worked on by all threads, and not shared out with others.
@@ -71,15 +72,20 @@ pub(crate) fn simulate_cloths(
         }
     };
     let is_large = |particles: &ClothParticles| particles.len() >= LARGE;
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    let large =
+        |rest: &ClothRest, particles: &ClothParticles| !rest.is_asleep() && is_large(particles);
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         if !is_large(&cloth.particles) {
             simulate(&mut cloth, Crew::ALONE);
         }
     });
-    if cloths.iter().any(|cloth| is_large(cloth.particles)) {
+    if cloths
+        .iter()
+        .any(|cloth| large(cloth.rest, cloth.particles))
+    {
         Desk::open(|crew| {
             for mut cloth in &mut cloths {
-                if is_large(&cloth.particles) {
+                if large(cloth.rest, &cloth.particles) {
                     simulate(&mut cloth, crew);
                 }
             }

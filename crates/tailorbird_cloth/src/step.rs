@@ -12,6 +12,7 @@ use crate::{
     crew::Crew,
     particles::ClothParticles,
     settings::ClothSettings,
+    sleep::ClothRest,
     solver::ClothSolver,
     stages::Substep,
     topology::{ClothTopology, Topology},
@@ -157,7 +158,7 @@ pub fn begin_step(
     mut settings: ResMut<ClothSettings>,
     mut valid: Local<ClothSettings>,
     time: Res<Time>,
-    mut cloths: Query<&mut ClothParticles, With<Cloth>>,
+    mut cloths: Query<(&ClothRest, &mut ClothParticles), With<Cloth>>,
 ) {
     if settings.is_changed() {
         let errors = settings.errors();
@@ -189,7 +190,10 @@ pub fn begin_step(
     step.steps += u64::from(step.running);
 
     let (mut count, mut particles) = (0, 0);
-    for mut cloth in &mut cloths {
+    for (rest, mut cloth) in &mut cloths {
+        if rest.is_asleep() {
+            continue;
+        }
         count += 1;
         particles += cloth.len();
         // Also while paused: then both ends of the interpolation agree.
@@ -222,3 +226,15 @@ macro_rules! for_each_cloth {
     };
 }
 pub(crate) use for_each_cloth;
+
+/// [`for_each_cloth`], for the stages of those that do not sleep.
+macro_rules! for_each_awake {
+    ($step:expr, $query:expr, |mut $cloth:ident: $item:ty| $do:block) => {
+        crate::step::for_each_cloth!($step, $query, |mut $cloth: $item| {
+            if !$cloth.rest.is_asleep() {
+                $do
+            }
+        })
+    };
+}
+pub(crate) use for_each_awake;

@@ -8,6 +8,7 @@ use crate::{
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     particles::ClothParticles,
+    sleep::ClothRest,
     step::{ClothStep, for_each_cloth},
 };
 
@@ -102,31 +103,38 @@ pub(crate) fn check_shape(shape: &ClothShape) -> Result<(), ClothErrorKind> {
 /// Puts a cloth whose state is not finite back to the start of the step.
 pub fn guard_finite(
     step: Res<ClothStep>,
-    mut cloths: Query<(Entity, &mut ClothParticles, &mut ClothStatus), With<Cloth>>,
+    mut cloths: Query<(Entity, &ClothRest, &mut ClothParticles, &mut ClothStatus), With<Cloth>>,
     commands: ParallelCommands,
 ) {
-    for_each_cloth!(step, cloths, |(entity, mut particles, mut status): (
-        Entity,
-        Mut<ClothParticles>,
-        Mut<ClothStatus>
-    )| {
-        if particles.position.is_finite() && particles.previous_position.is_finite() {
-            return;
-        }
-        let particle = particles
-            .positions()
-            .position(|p| !p.is_finite())
-            .unwrap_or_default();
-        particles.reset_to_step_start();
-        let error = ClothErrorKind::NonFiniteState { particle };
-        if status.is_ok_for(ErrorSource::State) {
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, [error]);
-        }
-        commands.command_scope(|mut commands| {
-            commands.trigger(ClothReset {
-                entity,
-                reason: ResetReason::NonFinite,
+    for_each_cloth!(
+        step,
+        cloths,
+        |(entity, rest, mut particles, mut status): (
+            Entity,
+            &ClothRest,
+            Mut<ClothParticles>,
+            Mut<ClothStatus>
+        )| {
+            if rest.is_asleep()
+                || particles.position.is_finite() && particles.previous_position.is_finite()
+            {
+                return;
+            }
+            let particle = particles
+                .positions()
+                .position(|p| !p.is_finite())
+                .unwrap_or_default();
+            particles.reset_to_step_start();
+            let error = ClothErrorKind::NonFiniteState { particle };
+            if status.is_ok_for(ErrorSource::State) {
+                ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, [error]);
+            }
+            commands.command_scope(|mut commands| {
+                commands.trigger(ClothReset {
+                    entity,
+                    reason: ResetReason::NonFinite,
+                });
             });
-        });
-    });
+        }
+    );
 }

@@ -13,6 +13,7 @@ use crate::{
     frame::ClothFrame,
     material::ClothMaterial,
     particles::ClothParticles,
+    sleep::ClothRest,
     solver::kernels::aerodynamics::{self, Air},
     step::{ClothStep, for_each_cloth},
     topology::ClothTopology,
@@ -156,6 +157,7 @@ pub fn apply_wind(
     mut valid: Local<Wind>,
     mut cloths: Query<
         (
+            &ClothRest,
             &ClothTopology,
             &ClothMaterial,
             &ClothFrame,
@@ -183,17 +185,19 @@ pub fn apply_wind(
         return;
     }
     for_each_cloth!(step, cloths, |(
+        rest,
         topology,
         material,
         frame,
         mut particles,
     ): (
+        &ClothRest,
         &ClothTopology,
         &ClothMaterial,
         &ClothFrame,
         Mut<ClothParticles>
     )| {
-        if particles.is_empty() || !material.errors().is_empty() {
+        if rest.is_asleep() || particles.is_empty() || !material.errors().is_empty() {
             return;
         }
         let wind = frame.vector_to_frame(velocity);

@@ -8,7 +8,7 @@ use bevy_mesh::{Mesh, VertexAttributeValues};
 use bevy_time::{Fixed, Time};
 use tailorbird_cloth::{
     bounds::ClothBounds, frame::ClothFrame, normals::ClothNormals, particles::ClothParticles,
-    step::ClothStep, topology::ClothTopology,
+    sleep::ClothRest, step::ClothStep, topology::ClothTopology,
 };
 
 use super::{ClothMesh, ClothMeshSettings};
@@ -16,7 +16,7 @@ use super::{ClothMesh, ClothMeshSettings};
 /// Writes positions, normals and tangents between the last two steps, and the box around them.
 ///
 /// The particles live in the entity's rigid frame, the mesh in its own space: they differ by the scale alone. A mesh that
-/// would stay as it is, while the simulation is paused, is left alone.
+/// would stay as it is, while the simulation is paused or the cloth sleeps, is left alone.
 pub(super) fn write_cloth_mesh(
     mut commands: Commands,
     settings: Res<ClothMeshSettings>,
@@ -25,6 +25,7 @@ pub(super) fn write_cloth_mesh(
     mut cloths: Query<(
         Entity,
         &mut ClothMesh,
+        &ClothRest,
         &ClothParticles,
         &ClothNormals,
         &ClothTopology,
@@ -43,8 +44,15 @@ pub(super) fn write_cloth_mesh(
         }
         _ => 1.0,
     };
-    for (entity, mut cloth_mesh, particles, normals, topology, frame, bounds, aabb) in &mut cloths {
-        let now = (step.steps(), fraction, frame.scale());
+    for (entity, mut cloth_mesh, rest, particles, normals, topology, frame, bounds, aabb) in
+        &mut cloths
+    {
+        // One that sleeps stays where it fell asleep.
+        let (steps, fraction) = match rest.asleep_since() {
+            Some(step) => (step, 1.0),
+            None => (step.steps(), fraction),
+        };
+        let now = (steps, fraction, frame.scale());
         let stale =
             cloth_mesh.revision != topology.revision || normals.shading() != cloth_mesh.shading;
         if stale || particles.is_empty() || cloth_mesh.written == Some(now) {

@@ -181,7 +181,17 @@ impl Setup {
             let at = Transform::from_xyz(0.0, 0.45, 0.0);
             world.spawn((ClothCollider::sphere(0.5), at));
         }
-        let bundle = |at: Transform| (self.cloth(), self.material(), self.solver, pins.clone(), at);
+        let bundle = |at: Transform| {
+            let awake = ClothSleep::never();
+            (
+                self.cloth(),
+                self.material(),
+                self.solver,
+                pins.clone(),
+                awake,
+                at,
+            )
+        };
         if self.scene == Scene::Flags {
             for k in 0..FLAGS.0 {
                 let (row, column) = (k / 40, k % 40);

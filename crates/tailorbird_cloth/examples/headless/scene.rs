@@ -179,7 +179,14 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
         Solver::Chains => ClothSolver::Chains,
     };
     world
-        .spawn((cloth, args.material(), solver, pins, transform))
+        .spawn((
+            cloth,
+            args.material(),
+            solver,
+            pins,
+            ClothSleep::never(),
+            transform,
+        ))
         .id()
 }
 

@@ -14,7 +14,7 @@ use crate::{
     cloth::Cloth,
     particles::ClothParticles,
     stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_cloth},
+    step::{ClothStep, for_each_awake},
     topology::Topology,
 };
 use kernels::verlet::Verlet;
@@ -55,7 +55,7 @@ impl ClothSolver {
 /// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
 pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         integrate(&substep, &mut cloth);
     });
 }
@@ -66,7 +66,7 @@ pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Clo
 /// relaxation, the others as XPBD.
 pub fn solve_constraints(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
         solve(&substep, &mut cloth);
     });
 }

@@ -30,6 +30,7 @@ pub struct Scene {
     pub threads: Option<usize>,
     /// How many sheets, 3 m apart along x.
     pub sheets: u32,
+    pub sleep: ClothSleep,
 }
 
 impl Default for Scene {
@@ -48,6 +49,7 @@ impl Default for Scene {
             sphere: None,
             threads: None,
             sheets: 1,
+            sleep: ClothSleep::never(),
         }
     }
 }
@@ -123,7 +125,7 @@ impl Sheet {
             .map(|k| {
                 let cloth = Cloth::grid(scene.size, scene.resolution).centered();
                 let at = Transform::from_xyz(3.0 * k as f32, 0.0, 0.0);
-                let bundle = (cloth, scene.material, scene.pins.clone(), at);
+                let bundle = (cloth, scene.material, scene.pins.clone(), scene.sleep, at);
                 app.world_mut().spawn(bundle).id()
             })
             .collect();

@@ -1,0 +1,292 @@
+//! Cloth at rest sleeps: it costs nothing until something happens to it.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+use crate::{
+    bounds::ClothBounds,
+    cloth::Cloth,
+    collider::ClothColliders,
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    forces::ClothForces,
+    frame::ClothFrame,
+    grab::ClothGrab,
+    material::ClothMaterial,
+    particles::ClothParticles,
+    pins::ClothPins,
+    solver::ClothSolver,
+    step::{ClothStep, for_each_cloth},
+    topology::ClothTopology,
+    wind::{Wind, WindModel},
+};
+
+/// When a cloth falls asleep: after it has been at rest for some time. At rest is, when no more than 1 % of its particles are
+/// faster than [`speed`](Self::speed), and none is ten times as fast.
+///
+/// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
+/// transform, its sleep settings, gravity, the substeps or the wind change, when a force is added, and when a collider
+/// moves, appears or disappears where it lies. [`ClothRest::wake`] wakes it by hand.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothSleep {
+    /// Whether the cloth falls asleep at all.
+    pub enabled: bool,
+    /// Below this a particle counts as resting [m/s].
+    pub speed: f32,
+    /// How long the cloth has to be at rest \[s\].
+    pub seconds: f32,
+}
+
+impl Default for ClothSleep {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            speed: 0.01,
+            seconds: 1.0,
+        }
+    }
+}
+
+impl ClothSleep {
+    /// A cloth that is always awake.
+    pub fn never() -> Self {
+        Self {
+            enabled: false,
+            ..Self::default()
+        }
+    }
+
+    /// What is wrong with these settings.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
+        let check = |field, value, allowed| {
+            ClothErrorKind::number(field, value, not_negative, allowed).into_iter()
+        };
+        check(
+            "ClothSleep.speed",
+            self.speed,
+            "at least 0 and finite [m/s]",
+        )
+        .chain(check(
+            "ClothSleep.seconds",
+            self.seconds,
+            "at least 0 and finite [s]",
+        ))
+        .collect()
+    }
+}
+
+/// Whether a cloth is at rest or asleep. Written by [`wake_cloths`] and [`rest_cloths`] alone.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothRest {
+    seconds: f32,
+    #[reflect(ignore)]
+    asleep: Option<Asleep>,
+}
+
+/// What a cloth fell asleep in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Asleep {
+    /// The step.
+    step: u64,
+    around: Around,
+}
+
+/// What acts on a cloth from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Around {
+    gravity: Vec3,
+    substeps: Option<u32>,
+    iterations: u32,
+    air: (Vec3, WindModel, f32),
+    /// Of the colliders that touch the cloth's box.
+    colliders: u64,
+}
+
+impl ClothRest {
+    /// How long the cloth has been at rest \[s\].
+    pub fn seconds(&self) -> f32 {
+        self.seconds
+    }
+
+    /// Whether the cloth sleeps.
+    pub fn is_asleep(&self) -> bool {
+        self.asleep.is_some()
+    }
+
+    /// The step after which the cloth fell asleep, where it sleeps.
+    pub fn asleep_since(&self) -> Option<u64> {
+        self.asleep.map(|asleep| asleep.step)
+    }
+
+    /// Wakes the cloth, and makes it wait again before it falls asleep.
+    pub fn wake(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// Room around a cloth in which a collider wakes it \[m\].
+const ROOM: f32 = 0.02;
+
+fn around(
+    step: &ClothStep,
+    wind: &Wind,
+    colliders: &ClothColliders,
+    frame: &ClothFrame,
+    bounds: &ClothBounds,
+    material: &ClothMaterial,
+) -> Around {
+    let mut hasher = DefaultHasher::new();
+    let room = ROOM + material.margin().max(0.0);
+    for collider in colliders.near(frame, bounds, room) {
+        collider.hash(&mut hasher);
+    }
+    Around {
+        gravity: step.gravity(),
+        substeps: step.fixed_substeps,
+        iterations: step.iterations(),
+        air: (
+            wind.velocity_at(step.elapsed()),
+            wind.model,
+            wind.air_density,
+        ),
+        colliders: hasher.finish(),
+    }
+}
+
+/// Wakes the cloths to which something happened since they fell asleep.
+pub fn wake_cloths(
+    step: Res<ClothStep>,
+    wind: Res<Wind>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<
+        (
+            Entity,
+            &mut ClothRest,
+            (
+                Ref<ClothSleep>,
+                Ref<ClothPins>,
+                Ref<ClothMaterial>,
+                Ref<ClothSolver>,
+                Ref<ClothTopology>,
+            ),
+            (&ClothGrab, &ClothForces),
+            (&ClothFrame, &ClothBounds),
+            &mut ClothStatus,
+        ),
+        With<Cloth>,
+    >,
+    commands: ParallelCommands,
+) {
+    for (entity, mut rest, settings, (grab, forces), (frame, bounds), mut status) in &mut cloths {
+        let (sleep, pins, material, solver, topology) = settings;
+        if sleep.is_changed() {
+            let errors = sleep.errors();
+            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Sleep, errors);
+        }
+        let changed = sleep.is_changed()
+            || pins.is_changed()
+            || material.is_changed()
+            || solver.is_changed()
+            || topology.is_changed();
+        let pulled = grab.particle().is_some() || !forces.is_empty() || frame.is_moving();
+        let other = |asleep: Asleep| {
+            asleep.around != around(&step, &wind, &colliders, frame, bounds, &material)
+        };
+        let disturbed = changed || pulled || rest.asleep.is_some_and(other);
+        if disturbed && *rest != ClothRest::default() {
+            rest.wake();
+        }
+    }
+}
+
+/// Measures how long the cloths have been at rest, and lets them fall asleep.
+pub fn rest_cloths(
+    step: Res<ClothStep>,
+    wind: Res<Wind>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<
+        (
+            &mut ClothRest,
+            &ClothSleep,
+            &ClothMaterial,
+            &ClothFrame,
+            &ClothBounds,
+            &mut ClothParticles,
+        ),
+        With<Cloth>,
+    >,
+) {
+    for_each_cloth!(step, cloths, |(
+        mut rest,
+        sleep,
+        material,
+        frame,
+        bounds,
+        mut particles,
+    ): (
+        Mut<ClothRest>,
+        &ClothSleep,
+        &ClothMaterial,
+        &ClothFrame,
+        &ClothBounds,
+        Mut<ClothParticles>
+    )| {
+        if !sleep.enabled || rest.is_asleep() || particles.is_empty() || !sleep.errors().is_empty()
+        {
+            return;
+        }
+        let seconds = step.seconds();
+        if !particles.is_at_rest(sleep.speed * seconds) {
+            rest.set_if_neq(ClothRest::default());
+            return;
+        }
+        rest.seconds += seconds;
+        // NaN never is.
+        if rest.seconds >= sleep.seconds {
+            particles.stop();
+            rest.asleep = Some(Asleep {
+                step: step.steps(),
+                around: around(&step, &wind, &colliders, frame, bounds, material),
+            });
+        }
+    });
+}
+
+impl ClothParticles {
+    /// Whether at most one in a hundred particles moved further in this step than `distance` \[m\], and none ten times as
+    /// far.
+    fn is_at_rest(&self, distance: f32) -> bool {
+        let (slow, fast) = (distance * distance, 100.0 * distance * distance);
+        let (now, before) = (&self.position, &self.step_position);
+        let moved = |i: usize| {
+            let x = now.x[i] - before.x[i];
+            let y = now.y[i] - before.y[i];
+            let z = now.z[i] - before.z[i];
+            x * x + y * y + z * z
+        };
+        let most = self.len() / 100;
+        let mut count = 0;
+        for i in 0..self.len() {
+            let q = moved(i);
+            if q > slow {
+                count += 1;
+                if count > most || q > fast {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Takes all velocity away, also for interpolation.
+    fn stop(&mut self) {
+        self.step_position.copy_from(&self.position);
+        self.previous_position.copy_from(&self.position);
+        self.lost_displacement.fill(Vec3::ZERO);
+    }
+}

@@ -1,0 +1,236 @@
+//! Cloth at rest sleeps, and wakes when something happens to it.
+
+#![cfg(test)]
+
+#[path = "chains/scene.rs"]
+#[expect(dead_code, reason = "shared with the test `chains`")]
+mod scene;
+
+use std::f32::consts::FRAC_PI_2;
+
+use bevy_math::{Quat, UVec2, Vec2, Vec3};
+use bevy_transform::components::Transform;
+use scene::{G, Scene, Sheet};
+use tailorbird_cloth::prelude::*;
+
+/// A strip that hangs from its upper edge, as it does at rest, and a sphere that it does not touch.
+fn strip() -> Scene {
+    Scene {
+        size: Vec2::new(0.5, 1.0),
+        resolution: UVec2::new(12, 24),
+        pins: ClothPins::edges([GridEdge::Top]),
+        gravity: Vec3::NEG_Y * G,
+        sphere: Some((Vec3::new(0.0, 0.0, -1.0), 0.2)),
+        sleep: ClothSleep::default(),
+        ..Scene::default()
+    }
+}
+
+/// A strip that sleeps.
+fn sleeping() -> Sheet {
+    let mut sheet = Sheet::new(&strip());
+    for _ in 0..20 {
+        sheet.steps(30);
+        if is_asleep(&sheet) {
+            return sheet;
+        }
+    }
+    panic!("still awake after 10 s");
+}
+
+fn is_asleep(sheet: &Sheet) -> bool {
+    sheet.get::<ClothRest>().is_asleep()
+}
+
+/// How far the particle went that went furthest [m].
+fn moved(sheet: &Sheet, from: &[Vec3]) -> f32 {
+    let ways = sheet.particles().positions().zip(from);
+    ways.map(|(to, from)| to.distance(*from))
+        .fold(0.0, f32::max)
+}
+
+fn positions(sheet: &Sheet) -> Vec<Vec3> {
+    sheet.particles().positions().collect()
+}
+
+#[test]
+fn a_cloth_at_rest_falls_asleep_and_stays_as_it_is() {
+    let mut sheet = sleeping();
+    let (hash, energy) = (sheet.hash(), sheet.particles().kinetic_energy());
+    assert_eq!(energy, 0.0);
+    sheet.steps(120);
+    assert!(is_asleep(&sheet));
+    assert_eq!(sheet.hash(), hash);
+}
+
+#[test]
+fn it_falls_asleep_no_earlier_than_it_is_told() {
+    let seconds = 2.5;
+    let mut sheet = Sheet::new(&Scene {
+        sleep: ClothSleep {
+            seconds,
+            ..ClothSleep::default()
+        },
+        ..strip()
+    });
+    let mut steps = 0;
+    while !is_asleep(&sheet) {
+        sheet.step();
+        steps += 1;
+        assert!(steps < 600, "still awake after 10 s");
+    }
+    assert!(steps as f32 >= seconds * 60.0, "{steps} steps");
+}
+
+#[test]
+fn nothing_sleeps_that_is_not_to() {
+    let mut sheet = Sheet::new(&Scene {
+        sleep: ClothSleep::never(),
+        ..strip()
+    });
+    sheet.steps(600);
+    assert!(!is_asleep(&sheet));
+}
+
+#[test]
+fn a_pendulum_is_awake_at_its_turning_points() {
+    // It starts horizontal and swings down.
+    let mut sheet = Sheet::new(&Scene {
+        gravity: Vec3::NEG_Z * G,
+        sphere: None,
+        ..strip()
+    });
+    for step in 0..300 {
+        sheet.step();
+        assert!(!is_asleep(&sheet), "step {step}");
+    }
+}
+
+#[test]
+fn waking_is_no_snap() {
+    let mut sheet = sleeping();
+    let before = positions(&sheet);
+    sheet.change::<ClothRest>(ClothRest::wake);
+    for _ in 0..30 {
+        sheet.step();
+        assert!(!is_asleep(&sheet));
+        let way = moved(&sheet, &before);
+        assert!(way < 1e-3, "{way} m");
+    }
+}
+
+/// Something happens to a sleeping strip: it wakes in the next step.
+fn wakes(name: &str, happen: impl FnOnce(&mut Sheet)) {
+    let mut sheet = sleeping();
+    sheet.steps(3);
+    assert!(is_asleep(&sheet), "{name}: woke by itself");
+    happen(&mut sheet);
+    sheet.step();
+    assert!(!is_asleep(&sheet), "{name}: sleeps on");
+}
+
+fn move_sphere(sheet: &mut Sheet, to: Vec3) {
+    let sphere = sheet.sphere.unwrap();
+    let mut sphere = sheet.app.world_mut().entity_mut(sphere);
+    sphere.get_mut::<Transform>().unwrap().translation = to;
+}
+
+#[test]
+fn it_wakes_when_something_happens_to_it() {
+    wakes("pins", |sheet| {
+        sheet.change(|pins: &mut ClothPins| *pins = ClothPins::corners(GridCorner::TOP));
+    });
+    wakes("grab", |sheet| {
+        let hand = positions(sheet)[200] + Vec3::Z * 0.1;
+        sheet.change(|grab: &mut ClothGrab| grab.take(200, 0.05, hand));
+    });
+    wakes("force", |sheet| {
+        sheet.change(|forces: &mut ClothForces| forces.add_force(200, Vec3::Z));
+    });
+    wakes("material", |sheet| {
+        sheet.change(|material: &mut ClothMaterial| material.areal_density *= 2.0);
+    });
+    wakes("solver", |sheet| {
+        sheet.change(|solver: &mut ClothSolver| *solver = ClothSolver::GaussSeidel);
+    });
+    wakes("shape", |sheet| {
+        sheet.change(|cloth: &mut Cloth| *cloth = Cloth::grid(Vec2::ONE, UVec2::splat(5)));
+    });
+    wakes("transform", |sheet| {
+        sheet.change(|at: &mut Transform| at.rotate_y(0.1));
+    });
+    wakes("sleep settings", |sheet| {
+        sheet.change(|sleep: &mut ClothSleep| sleep.speed *= 0.5);
+    });
+    wakes("gravity", |sheet| sheet.settings(|s| s.gravity *= 0.5));
+    wakes("substeps", |sheet| sheet.settings(|s| s.substeps = Some(4)));
+    wakes("wind", |sheet| {
+        sheet.app.insert_resource(Wind::steady(Vec3::Z * 5.0));
+    });
+    wakes("sphere comes", |sheet| {
+        move_sphere(sheet, Vec3::new(0.0, 0.0, -0.15));
+    });
+    wakes("sphere flies through", |sheet| {
+        move_sphere(sheet, Vec3::new(0.0, 0.0, 1.0));
+    });
+    wakes("ground appears", |sheet| {
+        let at = Transform::from_xyz(0.0, -0.4, 0.0);
+        let world = sheet.app.world_mut();
+        world.spawn((ClothCollider::half_space(), at));
+    });
+}
+
+#[test]
+fn it_sleeps_on_whatever_happens_elsewhere() {
+    let mut sheet = sleeping();
+    let hash = sheet.hash();
+    move_sphere(&mut sheet, Vec3::new(1.0, 0.0, -1.0));
+    sheet.steps(10);
+    let wall = Transform::from_xyz(0.0, 0.0, -3.0).with_rotation(Quat::from_rotation_x(FRAC_PI_2));
+    let world = sheet.app.world_mut();
+    let wall = world.spawn((ClothCollider::half_space(), wall)).id();
+    sheet.steps(10);
+    sheet.app.world_mut().despawn(wall);
+    // The same value again.
+    sheet.settings(|_| ());
+    sheet.steps(10);
+    assert!(is_asleep(&sheet));
+    assert_eq!(sheet.hash(), hash);
+}
+
+#[test]
+fn it_rests_on_a_sphere_and_falls_when_that_goes() {
+    let mut sheet = Sheet::new(&Scene {
+        sleep: ClothSleep::default(),
+        ..Scene::drape(UVec2::splat(24))
+    });
+    let mut steps = 0;
+    while !is_asleep(&sheet) {
+        sheet.step();
+        steps += 1;
+        assert!(steps < 1800, "still awake after 30 s");
+    }
+    let before = positions(&sheet);
+    let sphere = sheet.sphere.unwrap();
+    sheet.app.world_mut().despawn(sphere);
+    sheet.steps(30);
+    let fallen = moved(&sheet, &before);
+    assert!(fallen > 0.5, "{fallen} m in half a second");
+}
+
+#[test]
+fn wrong_settings_are_reported_and_nobody_sleeps_by_them() {
+    for speed in [f32::NAN, -1.0, f32::INFINITY] {
+        let mut sheet = Sheet::new(&Scene {
+            sleep: ClothSleep {
+                speed,
+                ..ClothSleep::default()
+            },
+            ..strip()
+        });
+        sheet.steps(200);
+        let complaint = sheet.complaint().unwrap_or_default();
+        assert!(complaint.contains("ClothSleep.speed"), "{complaint}");
+        assert!(!is_asleep(&sheet), "{speed}");
+    }
+}
