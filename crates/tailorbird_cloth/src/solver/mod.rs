@@ -33,19 +33,22 @@ pub enum ClothSolver {
 impl ClothSolver {
     /// How many substeps a cloth needs in a step of 1/60 s.
     ///
-    /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, of a mesh that is no grid a 12th of the square
-    /// root of its particles; even, 8 to 16: fewer do for a sheet that hangs, and not for one that is pulled or blown about.
-    /// [`GaussSeidel`](Self::GaussSeidel): 16.
+    /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
+    /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 12th of
+    /// the square root of its particles, 8 to 16. [`GaussSeidel`](Self::GaussSeidel): 16.
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
             Self::Chains => {
-                let side = topology.lattice.map_or_else(
-                    || (topology.particles() as f32).sqrt().ceil() as u32,
-                    |lattice| lattice.columns.max(lattice.rows),
-                );
-                // The chains of a mesh are shorter and bent, and more of them meet at a particle.
-                let part = if topology.fabric.is_some() { 12 } else { 24 };
-                side.div_ceil(part).next_multiple_of(2).clamp(8, 16)
+                let needed = if let Some(lattice) = topology.lattice {
+                    let side = lattice.columns.max(lattice.rows);
+                    let least = if side <= 36 { 6 } else { 8 };
+                    side.div_ceil(24).max(least)
+                } else {
+                    // The chains of a mesh are shorter and bent, and more of them meet at a particle.
+                    let side = (topology.particles() as f32).sqrt().ceil() as u32;
+                    side.div_ceil(12).max(8)
+                };
+                needed.next_multiple_of(2).min(16)
             }
             Self::GaussSeidel => 16,
         }
