@@ -14,7 +14,10 @@ use crate::{
     material::ClothMaterial,
     particles::ClothParticles,
     sleep::ClothRest,
-    solver::kernels::aerodynamics::{self, Air},
+    solver::kernels::{
+        aerodynamics::{self, Air, AirSheet},
+        lanes::SharedPoints,
+    },
     step::{ClothStep, for_each_cloth},
     topology::ClothTopology,
 };
@@ -207,36 +210,66 @@ pub fn apply_wind(
             previous_position,
             acceleration,
             inv_mass,
-            mass,
             substep_seconds,
             ..
         } = &mut *particles;
+        let air = Air {
+            wind,
+            density,
+            areal_density: material.areal_density,
+            drag: material.drag,
+            lift: material.lift,
+            seconds,
+        };
+        let per_second = if *substep_seconds > 0.0 {
+            substep_seconds.recip()
+        } else {
+            0.0
+        };
+        // The cells of a mesh are cut in its own way.
+        if let Some(lattice) = topology
+            .lattice
+            .as_ref()
+            .filter(|_| topology.grid.is_some())
+        {
+            let rows = 0..lattice.rows as usize;
+            let sheet = AirSheet {
+                lattice,
+                position,
+                previous: previous_position,
+                inv_mass,
+                acceleration: SharedPoints::new(acceleration),
+            };
+            match model {
+                WindModel::Classic => {
+                    aerodynamics::classic_on_sheet(step.level(), sheet, wind, rows);
+                }
+                WindModel::Aerodynamic => {
+                    aerodynamics::drag_and_lift_on_sheet(
+                        step.level(),
+                        sheet,
+                        air,
+                        per_second,
+                        rows,
+                    );
+                }
+            }
+            return;
+        }
+        let triangles = &topology.triangles;
         match model {
             WindModel::Classic => {
-                aerodynamics::classic(&topology.triangles, wind, position, inv_mass, acceleration);
+                aerodynamics::classic(triangles, wind, position, inv_mass, acceleration);
             }
             WindModel::Aerodynamic => {
-                let air = Air {
-                    wind,
-                    density,
-                    areal_density: material.areal_density,
-                    drag: material.drag,
-                    lift: material.lift,
-                    seconds,
-                };
-                let per_second = if *substep_seconds > 0.0 {
-                    substep_seconds.recip()
-                } else {
-                    0.0
-                };
                 aerodynamics::drag_and_lift(
-                    &topology.triangles,
+                    triangles,
                     &topology.triangle_areas,
                     air,
                     position,
                     previous_position,
                     per_second,
-                    mass,
+                    inv_mass,
                     acceleration,
                 );
             }

@@ -21,6 +21,10 @@ use bevy_math::Vec3;
 
 use crate::points::Points;
 
+mod sheet;
+
+pub(crate) use sheet::{AirSheet, classic_on_sheet, drag_and_lift_on_sheet};
+
 /// The air and the fabric in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Air {
@@ -60,12 +64,19 @@ impl Air {
             (turned * (1.0 - e)).clamp_length_max(speed) - u
         }
     }
+
+    /// A third of the mass of a triangle of this area at rest \[m²\], by the length of the step [kg/s].
+    #[inline]
+    fn third(&self, rest_area: f32) -> f32 {
+        self.areal_density * rest_area / 3.0 / self.seconds
+    }
 }
 
 /// Adds drag and lift to the accelerations [m/s²] of the particles.
 ///
-/// The velocity of a particle is `per_second` · (`position` − `previous`). A particle of `mass` \[kg\] gets the share of
-/// each triangle's mass (areal density times `rest_areas` \[m²\]) that is its own, a third.
+/// The velocity of a particle is `per_second` · (`position` − `previous`). A particle of mass 1/`inv_mass` \[kg\] gets the
+/// share of each triangle's mass (areal density times `rest_areas` \[m²\]) that is its own, a third; one that is held
+/// (`inv_mass` 0) gets nothing. A triangle without area does nothing.
 ///
 /// # Panics
 /// When a corner is not below the number of particles.
@@ -76,7 +87,7 @@ pub fn drag_and_lift(
     position: &Points,
     previous: &Points,
     per_second: f32,
-    mass: &[f32],
+    inv_mass: &[f32],
     acceleration: &mut Points,
 ) {
     for (triangle, &rest_area) in triangles.iter().zip(rest_areas) {
@@ -91,9 +102,9 @@ pub fn drag_and_lift(
         let mean = ((a - a_before) + (b - b_before) + (c - c_before)) * (per_second / 3.0);
         let stretched = 0.5 * double_area / rest_area;
         let change = air.velocity_change(mean - air.wind, normal / double_area, stretched);
-        let third = air.areal_density * rest_area / 3.0;
+        let third = air.third(rest_area);
         for i in corners {
-            acceleration.add(i, change * (third / mass[i] / air.seconds));
+            acceleration.add(i, change * (third * inv_mass[i]));
         }
     }
 }

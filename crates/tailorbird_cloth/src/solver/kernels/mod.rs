@@ -1,6 +1,7 @@
 //! The arithmetic: pure functions over slices, one file for each equation.
 
 pub mod aerodynamics;
+pub(crate) mod cells;
 pub mod contact;
 pub mod distance;
 pub mod half_space;
