@@ -9,7 +9,7 @@ use crate::{
     particles::ClothParticles,
     points::Points,
     sleep::ClothRest,
-    solver::kernels::normals,
+    solver::kernels::{lanes::SharedPoints, normals},
     step::{ClothStep, for_each_cloth},
     topology::ClothTopology,
 };
@@ -131,7 +131,10 @@ pub fn recompute_normals(
             ClothShading::Smooth => match &topology.lattice {
                 // The cells of a mesh are cut in its own way.
                 Some(lattice) if topology.grid.is_some() => {
-                    normals::smooth_lattice(step.level(), lattice, &particles.position, current);
+                    let rows = 0..lattice.rows as usize;
+                    let current = SharedPoints::new(current);
+                    let position = &particles.position;
+                    normals::smooth_lattice(step.level(), lattice, position, current, rows);
                 }
                 _ => normals::smooth(&topology.triangles, &particles.position, current),
             },

@@ -1,9 +1,14 @@
 //! Normals of triangles and, weighted by area, of particles.
 
+use std::ops::Range;
+
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{Factor, SharedPoints, V3, each_window};
+use super::{
+    cells::{AroundParticle, gather, with_cells},
+    lanes::{Factor, SharedPoints, V3, Window},
+};
 use crate::{points::Points, topology::lattice::Lattice};
 
 /// Unit normals of the triangles. One without area keeps the normal it had.
@@ -38,79 +43,60 @@ pub fn smooth(triangles: &[[u32; 3]], position: &Points, normals: &mut Points) {
     }
 }
 
-/// What [`smooth`] does, for the triangles of a sheet (see `topology::grid`): cells side by side.
+/// What [`smooth`] does, for a range of the rows of a sheet whose cells are cut as in `topology::grid`: cells side by side.
+/// Nothing but the normals of these rows is written, so that several threads may do different rows.
 ///
 /// # Panics
-/// When there are not as many positions and normals as particles.
-pub fn smooth_lattice(level: Level, lattice: &Lattice, position: &Points, normals: &mut Points) {
-    let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-    assert_eq!(position.len(), columns * rows, "positions of a sheet");
-    assert_eq!(normals.len(), columns * rows, "normals of a sheet");
-    normals.fill(Vec3::ZERO);
-    let normals = SharedPoints::new(normals);
-    dispatch!(level, simd => smooth_lattice_with(simd, columns, rows, position, normals));
-}
-
-#[inline(always)]
-fn smooth_lattice_with<S: Simd>(
-    simd: S,
-    columns: usize,
-    rows: usize,
+/// When there are not as many positions and normals as particles, or not as many rows.
+pub(crate) fn smooth_lattice(
+    level: Level,
+    lattice: &Lattice,
     position: &Points,
     normals: SharedPoints,
+    rows: Range<usize>,
 ) {
-    for row in 0..rows - 1 {
-        let upper = row * columns;
-        let lower = upper + columns;
-        // Up to the middle the diagonals of the upper half fall to the right, those of the lower half rise.
-        let middle = columns / 2;
-        let top = 2 * row < rows - 1;
-        for (cells, left) in [(0..middle, true), (middle..columns - 1, false)] {
-            let falling = left == top;
-            // First the corners on the left of all cells, then those on the right: then the order in which a particle's sum
-            // is made does not depend on how many cells lie side by side.
-            for right in [0, 1] {
-                each_window(
-                    simd,
-                    cells.clone(),
-                    #[inline(always)]
-                    |window| {
-                        let at = |offset| position.window::<S>(simd, window, offset);
-                        let (tl, tr) = (at(upper), at(upper + 1));
-                        let (bl, br) = (at(lower), at(lower + 1));
-                        let (first, second) = if falling {
-                            ((bl - tl).cross(br - tl), (br - tl).cross(tr - tl))
-                        } else {
-                            ((bl - tl).cross(tr - tl), (bl - tr).cross(br - tr))
-                        };
-                        let both = first + second;
-                        let (above, below) = match (falling, right) {
-                            (true, 0) => (both, first),
-                            (true, _) => (second, both),
-                            (false, 0) => (first, both),
-                            (false, _) => (both, second),
-                        };
-                        for (offset, part) in [(upper + right, above), (lower + right, below)] {
-                            let sum: V3<S> = normals.load_at(simd, window, offset) + part;
-                            normals.store_at(simd, window, offset, sum);
-                        }
-                    },
-                );
-            }
-        }
-    }
-    let (up, least) = (V3::splat(simd, Vec3::Z), S::f32s::splat(simd, 1e-30));
-    each_window(
-        simd,
-        0..columns * rows,
-        #[inline(always)]
-        |window| {
-            let sum: V3<S> = normals.load_at(simd, window, 0);
-            let q = sum.dot(sum);
-            let unit = Factor(S::f32s::splat(simd, 1.0) / q.sqrt()) * sum;
-            normals.store_at(simd, window, 0, unit.select(q.simd_gt(least), up));
-        },
+    let size = [lattice.columns, lattice.rows].map(|n| n as usize);
+    let n = size[0] * size[1];
+    assert!(position.is_of(n), "positions of a sheet");
+    assert!(
+        [normals.x, normals.y, normals.z].map(|axis| axis.len()) == [n; 3],
+        "normals of a sheet"
     );
+    assert!(rows.end <= size[1], "rows of a sheet");
+    let smooth = Smooth { position, normals };
+    with_cells(size[0], |scratch| {
+        dispatch!(level, simd => gather(simd, size, rows, smooth, scratch));
+    });
+}
+
+/// The normal of each particle.
+#[derive(Clone, Copy)]
+struct Smooth<'a> {
+    position: &'a Points,
+    normals: SharedPoints<'a>,
+}
+
+impl<S: Simd> AroundParticle<S> for Smooth<'_> {
+    type Corner = V3<S>;
+
+    #[inline(always)]
+    fn corner(self, simd: S, window: Window, offset: usize) -> V3<S> {
+        self.position.window(simd, window, offset)
+    }
+
+    #[inline(always)]
+    fn triangle(self, _simd: S, [a, b, c]: [V3<S>; 3]) -> V3<S> {
+        (b - a).cross(c - a)
+    }
+
+    #[inline(always)]
+    fn take(self, simd: S, window: Window, offset: usize, sum: V3<S>) {
+        let [one, least] = [1.0, 1e-30].map(|v| S::f32s::splat(simd, v));
+        let q = sum.dot(sum);
+        let unit = Factor(one / q.sqrt()) * sum;
+        let normal = unit.select(q.simd_gt(least), V3::splat(simd, Vec3::Z));
+        self.normals.store_at(simd, window, offset, normal);
+    }
 }
 
 #[cfg(test)]
@@ -136,11 +122,52 @@ mod tests {
             let mut first = None;
             for level in levels() {
                 let mut normals = Points::zeroed(position.len());
-                smooth_lattice(level, &lattice, &position, &mut normals);
+                let shared = SharedPoints::new(&mut normals);
+                smooth_lattice(level, &lattice, &position, shared, 0..rows as usize);
                 for (a, b) in normals.iter().zip(expected.iter()) {
                     assert!(a.distance(b) < 1e-4, "{columns}x{rows} {level:?}: {a} {b}");
                 }
                 assert_eq!(first.get_or_insert_with(|| normals.clone()), &normals);
+
+                let mut in_parts = Points::zeroed(position.len());
+                let shared = SharedPoints::new(&mut in_parts);
+                let half = rows as usize / 2;
+                for rows in [half..rows as usize, 0..half] {
+                    smooth_lattice(level, &lattice, &position, shared, rows);
+                }
+                assert_eq!(in_parts, normals);
+            }
+        }
+    }
+
+    /// `cargo test --release -p tailorbird_cloth --lib times_of_normals -- --ignored --nocapture`
+    #[test]
+    #[ignore = "prints times"]
+    fn times_of_normals() {
+        for size in [64u32, 128, 256] {
+            let n = (size * size) as usize;
+            let lattice = Lattice {
+                columns: size,
+                rows: size,
+                spacing: Vec2::ONE,
+            };
+            let position: Points = (0..n)
+                .map(|i| Vec3::new((i / 64) as f32, (i % 64) as f32, (i as f32).sin()))
+                .collect();
+            let mut normals = Points::zeroed(n);
+            for level in levels() {
+                let passes = 4_000_000 / n;
+                let best = (0..5)
+                    .map(|_| {
+                        let start = std::time::Instant::now();
+                        for _ in 0..passes {
+                            let shared = SharedPoints::new(&mut normals);
+                            smooth_lattice(level, &lattice, &position, shared, 0..size as usize);
+                        }
+                        start.elapsed().as_secs_f64() / (passes * n) as f64 * 1e9
+                    })
+                    .fold(f64::MAX, f64::min);
+                println!("{size} {level:?}: {best:.3} ns per particle");
             }
         }
     }
