@@ -222,7 +222,10 @@ fn pointer_events_carry_triangle_and_weights() {
         .0
         .expect("the pointer is over the cloth");
     assert!(position.distance(target) < 1e-3);
-    let corners = get::<ClothTopology>(&app, cloth).triangles[hit.triangle];
+    let triangles = get::<ClothTopology>(&app, cloth).triangles();
+    let corners = triangles
+        .get(hit.triangle)
+        .expect("a triangle of the cloth");
     assert!(corners.contains(&(hit.particle as u32)));
     let [a, b, c] = corners.map(|i| particle(&app, cloth, i as usize));
     let weighted = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;

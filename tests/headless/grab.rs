@@ -11,7 +11,7 @@ const HELD: usize = 8 * N + 8;
 /// The largest ratio of an edge around the hand to its length at rest.
 fn spike(sim: &Sim, cloth: Entity) -> f32 {
     let (particles, topology) = (sim.particles(cloth), sim.get::<ClothTopology>(cloth));
-    let neighbors = topology.neighbors.of(HELD as u32);
+    let neighbors = topology.neighbors(HELD as u32);
     assert_eq!(neighbors.len(), 8);
     neighbors
         .iter()

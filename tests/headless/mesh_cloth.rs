@@ -49,11 +49,11 @@ fn seams_hold_together() {
     for row in 0..9 {
         let (left, right) = (row * 5 + 4, 45 + row * 5);
         assert_eq!(
-            topology.particle_of_vertex[left],
-            topology.particle_of_vertex[right]
+            topology.particle_of_vertex(left),
+            topology.particle_of_vertex(right)
         );
     }
-    assert_eq!(topology.triangles.len(), 128);
+    assert_eq!(topology.triangles().len(), 128);
     assert!(sim.longest_edge(cloth) < 1.1 && sim.errors(cloth).is_empty());
 }
 

@@ -16,7 +16,7 @@ fn a_scaled_entity_has_scaled_rest_lengths() {
     sim.step(1);
     let lengths = |sim: &Sim| -> Vec<f32> {
         sim.get::<ClothTopology>(cloth)
-            .constraints
+            .constraints()
             .rest_lengths
             .clone()
     };

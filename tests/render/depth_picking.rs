@@ -159,7 +159,7 @@ fn pixel_of(app: &Offscreen, camera: Entity, cloth: Entity, particle: usize) -> 
             .entity(cloth)
             .components::<(&ClothParticles, &ClothTopology, &ClothFrame)>();
     let triangle = topology
-        .triangles
+        .triangles()
         .iter()
         .find(|corners| corners.contains(&(particle as u32)));
     let at = triangle.expect("every particle is in one").map(|corner| {

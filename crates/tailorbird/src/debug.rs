@@ -94,13 +94,13 @@ fn draw(
         }
         let at = |i: usize| particles.world_position(i, frame);
         let stored = |i: usize| at(particles.order().given(i as u32) as usize);
-        let size = (topology.areas.iter().sum::<f32>() / particles.len() as f32).sqrt();
+        let size = (topology.areas().sum::<f32>() / particles.len() as f32).sqrt();
 
         for family in ConstraintFamily::ALL {
             let Some(color) = show.color(family) else {
                 continue;
             };
-            for ([a, b], _) in topology.constraints.family(family) {
+            for ([a, b], _) in topology.constraints().family(family) {
                 gizmos.line(stored(a as usize), stored(b as usize), color);
             }
         }
@@ -122,9 +122,10 @@ fn draw(
                 let from = match normals.shading() {
                     ClothShading::Smooth => stored(i),
                     ClothShading::Flat => {
-                        topology.triangles[i]
-                            .iter()
-                            .map(|&k| stored(k as usize))
+                        let corners = topology.triangles().get(i).unwrap_or_default();
+                        corners
+                            .into_iter()
+                            .map(|k| stored(k as usize))
                             .sum::<Vec3>()
                             / 3.0
                     }

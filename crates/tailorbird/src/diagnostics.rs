@@ -50,7 +50,7 @@ fn measure(
     let particles: usize = cloths.iter().map(|(_, particles)| particles.len()).sum();
     let constraints: usize = cloths
         .iter()
-        .map(|(topology, _)| topology.constraints.len())
+        .map(|(topology, _)| topology.constraint_count())
         .sum();
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::STEP_TIME, || {
         step_time.total.as_secs_f64() * 1e3

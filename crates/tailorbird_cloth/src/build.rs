@@ -1,20 +1,85 @@
 //! Builds cloths, and rebuilds them when their shape changes.
 
-use std::sync::Arc;
+use std::{
+    collections::{HashMap, hash_map::DefaultHasher},
+    hash::Hasher,
+    sync::{Arc, Weak},
+};
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
 
 use crate::{
-    cloth::Cloth,
-    error::{ClothStatus, ErrorSource},
+    cloth::{Cloth, ClothShape},
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::ClothFrame,
     particles::ClothParticles,
     points::Points,
     topology::{ClothTopology, Topology},
 };
 
-/// Builds the topology and particles of cloths that are new or whose shape or scale changed.
+/// The topologies that are in use, so that cloths of equal shape and scale share one.
+#[derive(Default)]
+pub struct SharedTopologies(HashMap<u128, Weak<Topology>>);
+
+impl SharedTopologies {
+    /// The topology of a shape that is scaled by `scale`, built where no cloth has it yet.
+    fn get(&mut self, shape: &ClothShape, scale: Vec3) -> Result<Arc<Topology>, ClothErrorKind> {
+        let print = fingerprint(shape, scale);
+        if let Some(topology) = self.0.get(&print).and_then(Weak::upgrade) {
+            return Ok(topology);
+        }
+        let topology = Arc::new(Topology::build(shape, scale)?);
+        self.0.insert(print, Arc::downgrade(&topology));
+        Ok(topology)
+    }
+
+    /// Forgets those that are not in use any more.
+    fn forget(&mut self) {
+        self.0.retain(|_, topology| topology.strong_count() > 0);
+    }
+}
+
+/// 128 bits that stand for all bits of a shape and its scale: two that differ do not meet in practice, so that none has to be
+/// kept to compare with.
+fn fingerprint(shape: &ClothShape, scale: Vec3) -> u128 {
+    let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
+    halves[1].write_u8(1);
+    let mut write = |number: u32| halves.iter_mut().for_each(|half| half.write_u32(number));
+    scale.to_array().iter().for_each(|v| write(v.to_bits()));
+    match shape {
+        ClothShape::Grid {
+            size,
+            resolution,
+            origin,
+        } => {
+            let numbers = [size.to_array(), origin.to_array()].map(|p| p.map(f32::to_bits));
+            let numbers = numbers.as_flattened().iter();
+            [0].iter()
+                .chain(&resolution.to_array())
+                .chain(numbers)
+                .copied()
+                .for_each(write);
+        }
+        ClothShape::Mesh {
+            positions,
+            indices,
+            weld_distance,
+        } => {
+            [1, weld_distance.to_bits(), positions.len() as u32]
+                .into_iter()
+                .for_each(&mut write);
+            let coordinates = positions.iter().flat_map(|p| p.to_array());
+            coordinates.map(f32::to_bits).for_each(&mut write);
+            indices.iter().copied().for_each(write);
+        }
+    }
+    let [low, high] = halves.map(|half| u128::from(half.finish()));
+    high << 64 | low
+}
+
+/// Builds the topology and particles of cloths that are new or whose shape or scale changed. Cloths of equal shape and scale
+/// share their topology, and with it its revision.
 ///
 /// A shape that is wrong is reported, and the cloth stays what it was: one that was never valid has no particles.
 pub fn build_topology(
@@ -26,20 +91,23 @@ pub fn build_topology(
         &mut ClothParticles,
         &mut ClothStatus,
     )>,
+    mut shared: Local<SharedTopologies>,
     commands: ParallelCommands,
 ) {
+    let mut built = false;
     for (entity, cloth, frame, mut topology, mut particles, mut status) in &mut cloths {
         let outdated = topology.revision == 0 || topology.scale != frame.scale();
         let failed_before = !status.is_ok_for(ErrorSource::Shape) && !cloth.is_changed();
         if !frame.placed || !(cloth.is_changed() || outdated && !failed_before) {
             continue;
         }
-        match Topology::build(&cloth.shape, frame.scale()) {
+        built = true;
+        match shared.get(&cloth.shape, frame.scale()) {
             Ok(new) => {
                 *particles = keep_shape(&topology, &new, &particles)
                     .unwrap_or_else(|| ClothParticles::at_rest(&new));
                 let dropped = new.dropped.clone();
-                topology.0 = Arc::new(new);
+                topology.0 = new;
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, dropped);
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, None);
             }
@@ -47,6 +115,9 @@ pub fn build_topology(
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, [error]);
             }
         }
+    }
+    if built {
+        shared.forget();
     }
 }
 
@@ -89,6 +160,43 @@ fn resample(points: &Points, from: UVec2, to: UVec2) -> Points {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_shapes_share_a_topology_while_it_is_in_use() {
+        let mut shared = SharedTopologies::default();
+        let grid =
+            |columns, width| Cloth::grid(Vec2::new(width, 1.0), UVec2::new(columns, 4)).shape;
+        let mesh = |z| {
+            let corners = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, 1.0, z)];
+            Cloth::mesh(corners, [0, 1, 2]).shape
+        };
+        let shapes = [
+            grid(4, 1.0),
+            grid(5, 1.0),
+            grid(4, 2.0),
+            mesh(0.0),
+            mesh(1.0),
+        ];
+        let scales = [Vec3::ONE, Vec3::new(1.0, 2.0, 1.0)];
+        let mut all = Vec::new();
+        for (shape, scale) in shapes
+            .iter()
+            .flat_map(|shape| scales.map(|scale| (shape, scale)))
+        {
+            let first = shared.get(shape, scale).expect("valid");
+            let second = shared.get(&shape.clone(), scale).expect("valid");
+            assert!(Arc::ptr_eq(&first, &second));
+            assert!(all.iter().all(|other| !Arc::ptr_eq(other, &first)));
+            all.push(first);
+        }
+        let revision = all[0].revision;
+        all.truncate(1);
+        shared.forget();
+        assert_eq!(shared.0.len(), 1);
+        drop(all);
+        let again = shared.get(&shapes[0], scales[0]).expect("valid");
+        assert!(again.revision > revision);
+    }
 
     #[test]
     fn resampling_keeps_a_plane_and_its_corners() {

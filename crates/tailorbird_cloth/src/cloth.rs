@@ -172,11 +172,16 @@ impl ClothShape {
                 origin,
             } => {
                 let last = (resolution - 1).as_vec2();
-                (0..resolution.y)
-                    .flat_map(|row| (0..resolution.x).map(move |column| UVec2::new(column, row)))
-                    .map(|at| (at.as_vec2() / last - *origin) * *size)
-                    .map(|p| Vec3::new(p.x, -p.y, 0.0))
-                    .collect()
+                let mut positions = Vec::with_capacity((resolution.x * resolution.y) as usize);
+                positions.extend(
+                    (0..resolution.y)
+                        .flat_map(|row| {
+                            (0..resolution.x).map(move |column| UVec2::new(column, row))
+                        })
+                        .map(|at| (at.as_vec2() / last - *origin) * *size)
+                        .map(|p| Vec3::new(p.x, -p.y, 0.0)),
+                );
+                positions
             }
             Self::Mesh {
                 positions,

@@ -170,8 +170,7 @@ fn patch(
     let rest = |i: u32| topology.rest_positions[i as usize];
     let center = order.stored(center);
     let ring = topology
-        .neighbors
-        .of(center)
+        .neighbors(center)
         .iter()
         .map(|&n| rest(n).distance(rest(center)))
         .fold(0.0, f32::max);
@@ -182,7 +181,7 @@ fn patch(
     let mut queue = VecDeque::from([center]);
     let mut patch = Vec::new();
     while let Some(from) = queue.pop_front() {
-        for &particle in topology.neighbors.of(from) {
+        for &particle in topology.neighbors(from).iter() {
             let weight = falloff(rest(particle).distance(rest(center)), radius);
             if weight > 0.0 && !seen.contains(&particle) {
                 seen.push(particle);
@@ -206,7 +205,7 @@ impl ClothParticles {
         let from = self.position.get(i);
         let mut hand = from + (held.target - from) / left as f32;
         // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
-        for &neighbor in topology.neighbors.of(held.particle).iter().cycle().take(16) {
+        for &neighbor in topology.neighbors(held.particle).iter().cycle().take(16) {
             let rest =
                 topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
             let anchor = self.position.get(neighbor as usize);

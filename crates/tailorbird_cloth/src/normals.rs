@@ -122,7 +122,7 @@ pub fn recompute_normals(
             *shading_before = *shading;
             let len = match shading {
                 ClothShading::Smooth => topology.particles(),
-                ClothShading::Flat => topology.triangles.len(),
+                ClothShading::Flat => topology.triangles().len(),
             };
             *current = std::iter::repeat_n(Vec3::Z, len).collect();
         }
@@ -139,7 +139,7 @@ pub fn recompute_normals(
                 _ => normals::smooth(&topology.triangles, &particles.position, current),
             },
             ClothShading::Flat => {
-                normals::flat(&topology.triangles, &particles.position, current);
+                normals::flat(topology.triangles().iter(), &particles.position, current);
             }
         }
         if fresh {

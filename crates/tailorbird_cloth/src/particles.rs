@@ -175,7 +175,7 @@ impl ClothParticles {
 
     /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
     /// frame \[m\]. `i` is in storage order, as in
-    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex).
+    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex()).
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -240,7 +240,7 @@ impl ClothParticles {
     }
 
     /// Gives every particle its share of the mass; pinned and grabbed ones become kinematic.
-    pub(crate) fn set_masses(&mut self, areas: &[f32], areal_density: f32) {
+    pub(crate) fn set_masses(&mut self, areas: impl Iterator<Item = f32>, areal_density: f32) {
         self.areal_density = areal_density;
         for (mass, area) in self.mass.iter_mut().zip(areas) {
             *mass = areal_density * area;

@@ -299,7 +299,7 @@ pub fn apply_pins(
         particles.set_pins(&held);
         let errors = material.errors();
         if errors.is_empty() {
-            particles.set_masses(&topology.areas, material.areal_density);
+            particles.set_masses(topology.areas(), material.areal_density);
         } else {
             particles.update_inv_masses();
         }

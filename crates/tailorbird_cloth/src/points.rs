@@ -130,11 +130,14 @@ impl Points {
 impl FromIterator<Vec3> for Points {
     fn from_iter<I: IntoIterator<Item = Vec3>>(iter: I) -> Self {
         let mut points = Self::default();
+        let iter = iter.into_iter();
+        points.each(|values| values.reserve_exact(iter.size_hint().0));
         for p in iter {
             points.x.push(p.x);
             points.y.push(p.y);
             points.z.push(p.z);
         }
+        points.each(Vec::shrink_to_fit);
         points
     }
 }

@@ -7,7 +7,7 @@ use crate::{bounds::ClothBounds, particles::ClothParticles, topology::Topology};
 /// Where a ray meets a cloth, in the space of the ray that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClothHit {
-    /// The triangle, an index into [`Topology::triangles`].
+    /// The triangle, an index into [`Topology::triangles()`].
     pub triangle: usize,
     /// Weights of its three corners; they add up to 1.
     pub barycentric: Vec3,
@@ -33,7 +33,7 @@ impl ClothParticles {
             return None;
         }
         let mut nearest: Option<(usize, Vec3, f32)> = None;
-        for (triangle, corners) in topology.triangles.iter().enumerate() {
+        for (triangle, corners) in topology.triangles().iter().enumerate() {
             let corners = corners.map(|i| self.position.get(i as usize));
             if let Some((barycentric, distance)) = meet(ray, corners)
                 && nearest.is_none_or(|(.., d)| distance < d)
@@ -42,7 +42,7 @@ impl ClothParticles {
             }
         }
         let (triangle, barycentric, distance) = nearest?;
-        let corners = topology.triangles[triangle];
+        let corners = topology.triangles().get(triangle)?;
         let [a, b, c] = corners.map(|i| self.position.get(i as usize));
         let point = ray.get_point(distance);
         let normal = (b - a).cross(c - a).normalize_or(-*ray.direction);
@@ -134,8 +134,11 @@ mod tests {
             assert!((hit.distance - 2.0).abs() < 1e-6);
             assert_eq!(hit.particle, 2 * 5 + 3);
             assert_eq!(hit.normal, Vec3::Z * side);
-            let [a, b, c] =
-                topology.triangles[hit.triangle].map(|i| particles.position(i as usize));
+            let [a, b, c] = topology
+                .triangles()
+                .get(hit.triangle)
+                .expect("one")
+                .map(|i| particles.position(i as usize));
             let point = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
             assert!(point.distance(hit.point) < 1e-6);
         }

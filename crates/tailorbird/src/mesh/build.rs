@@ -105,7 +105,7 @@ pub(super) fn make_materials_two_sided(
     });
 }
 
-/// The vertices of a mesh in the making, in the order of the source: that of [`Topology::particle_of_vertex`].
+/// The vertices of a mesh in the making, in the order of the source: that of [`Topology::particle_of_vertex()`].
 struct Vertices {
     indices: Vec<u32>,
     uvs: Option<Vec<Vec2>>,
@@ -166,8 +166,7 @@ impl Vertices {
     /// A normal for each particle.
     fn smooth(mut self, topology: &Topology) -> Self {
         self.fill_grid_indices(topology);
-        self.normal_of_vertex
-            .clone_from(&topology.particle_of_vertex);
+        self.normal_of_vertex = topology.particles_of_vertices().collect();
         self
     }
 
@@ -176,8 +175,8 @@ impl Vertices {
         self.fill_grid_indices(topology);
         // Triangles that the topology left out are drawn with the normal of the first.
         let mut normals = vec![0; self.indices.len()];
-        for (normal, source) in topology.source_triangles.iter().enumerate() {
-            let start = *source as usize * 3;
+        for (normal, source) in topology.source_triangles().enumerate() {
+            let start = source as usize * 3;
             normals[start..start + 3].fill(normal as u32);
         }
         self.uvs = self
@@ -196,7 +195,7 @@ impl Vertices {
     /// A grid's triangles are known to its topology alone, where vertices and particles are the same.
     fn fill_grid_indices(&mut self, topology: &Topology) {
         if topology.grid.is_some() {
-            self.indices = topology.triangles.iter().flatten().copied().collect();
+            self.indices = topology.triangles().iter().flatten().collect();
         }
     }
 
@@ -204,7 +203,7 @@ impl Vertices {
         let particle_of_vertex: Vec<u32> = self
             .source_vertex
             .iter()
-            .map(|&v| topology.particle_of_vertex[v as usize])
+            .map(|&v| topology.particle_of_vertex(v as usize))
             .collect();
         let zeros = vec![[0.0f32; 3]; particle_of_vertex.len()];
         let mut mesh = self.source.unwrap_or_else(|| {

@@ -1,13 +1,12 @@
 //! Takes one measurement.
 
-use std::time::{Duration, Instant};
+use std::{
+    collections::HashSet,
+    time::{Duration, Instant},
+};
 
 use bevy_math::Vec3;
-use tailorbird_cloth::{
-    prelude::*,
-    tethers::ClothTethers,
-    topology::{Topology, constraints::ConstraintFamily},
-};
+use tailorbird_cloth::{prelude::*, tethers::ClothTethers, topology::Topology};
 
 use super::{
     cli::Args,
@@ -50,10 +49,14 @@ pub fn measure(setup: &Setup, args: &Args) -> Record {
         }
     }
     let (mut particles, mut bytes) = (0, 0);
+    let mut counted = HashSet::new();
     for (state, topology, normals, tethers) in cloths.iter(app.world()) {
         particles += state.len();
         bytes += state.memory_bytes() + normals.memory_bytes() + tethers.memory_bytes();
-        bytes += topology.memory_bytes();
+        // Equal shapes share one.
+        if counted.insert(topology.revision) {
+            bytes += topology.memory_bytes();
+        }
     }
     let substeps = app.world().resource::<ClothStep>().substeps();
     let ms = median(times).as_secs_f64() * 1e3;
@@ -94,13 +97,13 @@ fn topology_ms(cloth: &Cloth) -> f64 {
 
 /// Mean of max(0, 1 − l/L) over the edges [-].
 fn compression_of(particles: &ClothParticles, topology: &Topology) -> f64 {
-    let edges = topology.constraints.family(ConstraintFamily::Stretch);
-    let count = edges.clone().count().max(1);
+    let edges = topology.stretch_edges();
+    let count = edges.len().max(1);
     let sum: f64 = edges
+        .into_iter()
         .map(|([a, b], rest)| {
-            let length = particles
-                .position(a as usize)
-                .distance(particles.position(b as usize));
+            let [p, q] = [a, b].map(|i| particles.points().get(i as usize));
+            let length = p.distance(q);
             f64::from((1.0 - length / rest).max(0.0))
         })
         .sum();

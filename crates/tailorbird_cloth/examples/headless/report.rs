@@ -57,7 +57,7 @@ impl Report {
         let lowest = |lowest: f32, value: f32| lowest.min(value);
         Self {
             particles: particles.len(),
-            constraints: topology.constraints.len(),
+            constraints: topology.constraint_count(),
             substeps: sheet.app.world().resource::<ClothStep>().substeps(),
             steps: args.steps,
             ms_per_step_median: step_time.as_secs_f64() * 1e3,

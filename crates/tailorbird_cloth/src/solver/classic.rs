@@ -26,7 +26,7 @@ pub(super) fn solve(
         };
         alpha_tilde(compliance, substep.seconds)
     };
-    let constraints = &topology.constraints;
+    let constraints = topology.constraints();
     let ClothParticles {
         position,
         inv_mass,

@@ -155,7 +155,7 @@ fn users_keep_their_numbers() {
             assert_eq!(particles.position(i as usize), rest[i as usize]);
         }
         assert_eq!(particles.closest_particle(rest[77]).map(|c| c.0), Some(77));
-        let stored = |vertex: usize| topology(&app, cloth).particle_of_vertex[vertex] as usize;
+        let stored = |vertex: usize| topology(&app, cloth).particle_of_vertex(vertex) as usize;
         for vertex in [0, 9, 250] {
             let drawn = particles.interpolated(stored(vertex), 1.0);
             assert_eq!(drawn, particles.position(vertex));

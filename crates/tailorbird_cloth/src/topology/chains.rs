@@ -5,6 +5,7 @@ use std::ops::Range;
 use bevy_math::Vec3;
 
 use super::weave::{EdgeFamily, Weave};
+use crate::memory::heap;
 
 mod cover;
 mod layout;
@@ -88,6 +89,15 @@ impl Chains {
             order = (0..rest_positions.len() as u32).collect();
         }
         (chains, order)
+    }
+
+    /// What they take on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.passes)
+            + heap(&self.batches)
+            + heap(&self.particle)
+            + heap(&self.rest_length)
+            + heap(&self.scale)
     }
 
     /// The ends and rest lengths \[m\] of all edges.

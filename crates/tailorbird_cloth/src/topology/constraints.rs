@@ -5,6 +5,7 @@ use std::ops::Range;
 use bevy_math::Vec3;
 
 use super::coloring::color;
+use crate::memory::heap;
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,6 +52,11 @@ impl DistanceConstraints {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
+    }
+
+    /// What they take on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.ends) + heap(&self.rest_lengths) + heap(&self.batches)
     }
 
     /// The ends and rest lengths of one family.

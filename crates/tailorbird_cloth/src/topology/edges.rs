@@ -5,13 +5,14 @@ use std::collections::HashSet;
 use bevy_math::Vec3;
 
 use super::{
-    Neighbors, Topology,
+    Topology,
     chains::{Chains, inverse},
     constraints::{ConstraintFamily, DistanceConstraints},
     fabric::Fabric,
     hinges::HingeConstraints,
     lattice::Lattice,
     mesh_edges::MeshEdges,
+    neighbors::NeighborLists,
     order::ParticleOrder,
     recognize::Recognized,
     weave::Weave,
@@ -51,17 +52,23 @@ pub(super) fn build(
         });
     }
     arrange(&mut topology);
-    let springs = springs(&topology.triangles, &topology.rest_positions);
-    for (family, pairs) in ConstraintFamily::ALL.into_iter().zip(&springs) {
-        topology
-            .constraints
-            .push_colored(family, &topology.rest_positions, pairs);
-    }
-    topology.neighbors = Neighbors::new(
-        topology.rest_positions.len(),
-        edges_of(&topology.constraints),
-    );
     Ok(topology)
+}
+
+/// The springs of the triangles, in batches that share no particle.
+pub(super) fn constraints(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> DistanceConstraints {
+    let mut constraints = DistanceConstraints::default();
+    let springs = springs(triangles, rest_positions);
+    for (family, pairs) in ConstraintFamily::ALL.into_iter().zip(&springs) {
+        constraints.push_colored(family, rest_positions, pairs);
+    }
+    constraints
+}
+
+/// Who is joined to whom by an edge or a diagonal.
+pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> NeighborLists {
+    let [_, shear, stretch] = springs(triangles, rest_positions);
+    NeighborLists::new(rest_positions.len(), stretch.iter().chain(&shear).copied())
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
@@ -127,13 +134,6 @@ fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     high - low <= FLAT * size && areas.into_iter().all(|area| area.dot(normal) > 0.0)
 }
 
-fn edges_of(constraints: &DistanceConstraints) -> impl Iterator<Item = [u32; 2]> + Clone + '_ {
-    constraints
-        .family(ConstraintFamily::Stretch)
-        .chain(constraints.family(ConstraintFamily::Shear))
-        .map(|(ends, _)| ends)
-}
-
 /// Fills in the triangles, without degenerate and duplicate ones, and lists those.
 fn triangles(indices: &[u32], topology: &mut Topology) {
     let mut seen = HashSet::new();
@@ -163,6 +163,9 @@ fn triangles(indices: &[u32], topology: &mut Topology) {
             topology.triangles.push(triangle);
             topology.source_triangles.push(number as u32);
         }
+    }
+    if topology.triangles.len() * 3 == indices.len() {
+        topology.source_triangles = Vec::new();
     }
     if let (count @ 1.., first) = degenerate {
         topology
@@ -231,7 +234,7 @@ mod tests {
     }
 
     fn count(topology: &Topology, family: ConstraintFamily) -> usize {
-        topology.constraints.family(family).count()
+        topology.constraints().family(family).count()
     }
 
     #[test]
@@ -242,7 +245,7 @@ mod tests {
         assert_eq!(count(&topology, ConstraintFamily::Stretch), 12);
         assert_eq!(count(&topology, ConstraintFamily::Shear), 8);
         assert_eq!(count(&topology, ConstraintFamily::Bend), 4);
-        let total: f32 = topology.areas.iter().sum();
+        let total: f32 = topology.areas().sum();
         assert!((total - 4.0).abs() < 1e-6);
     }
 
@@ -253,7 +256,8 @@ mod tests {
         indices.extend([0, 0, 1, 0, 1, 2, 4, 0, 3]);
         let topology =
             Topology::build(&Cloth::mesh(positions, indices).shape, Vec3::ONE).expect("valid");
-        assert_eq!(topology.triangles.len(), whole);
+        assert_eq!(topology.triangles().len(), whole);
+        assert!(topology.source_triangles().eq(0..whole as u32));
         assert_eq!(
             topology.dropped,
             [

@@ -10,6 +10,7 @@ use super::{
     mesh_edges::MeshEdges,
     weave::{EdgeFamily, Weave},
 };
+use crate::memory::heap;
 
 /// A weight below this is that of an edge across which nothing flows: the diagonal of a right-angled cell.
 const LEAST_WEIGHT: f32 = 1e-3;
@@ -98,6 +99,15 @@ impl Fabric {
         fabric
     }
 
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        self.chains.memory_bytes()
+            + heap(&self.particle_or_last)
+            + heap(&self.runs)
+            + self.shear.memory_bytes()
+            + heap(&self.exchanges)
+    }
+
     /// The edges along the threads.
     pub fn chains(&self) -> &Chains {
         &self.chains
@@ -135,6 +145,10 @@ impl Fabric {
 }
 
 impl Springs {
+    fn memory_bytes(&self) -> usize {
+        heap(&self.ends) + heap(&self.rest_length) + heap(&self.scale) + heap(&self.batches)
+    }
+
     fn new(rest_positions: &[Vec3], weave: &Weave) -> Self {
         let edges = || {
             let edges = weave.ends.iter().zip(&weave.family).zip(&weave.scale);

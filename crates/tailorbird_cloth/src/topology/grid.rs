@@ -3,67 +3,39 @@
 use bevy_math::{UVec2, Vec2, Vec3};
 
 use super::{
-    Neighbors, Topology, constraints::ConstraintFamily, constraints::DistanceConstraints,
-    lattice::Lattice,
+    Topology, constraints::ConstraintFamily, constraints::DistanceConstraints, lattice::Lattice,
 };
 
 /// Builds the topology of a grid from its particles in row-major order. Areas and revision are left to the caller.
 pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
-    let (columns, rows) = (resolution.x, resolution.y);
-    let triangles = triangles(columns, rows);
-    let constraints = constraints(columns, rows, &rest_positions);
-    let particles = rest_positions.len();
-    let edges = constraints
-        .family(ConstraintFamily::Stretch)
-        .chain(constraints.family(ConstraintFamily::Shear))
-        .map(|(ends, _)| ends);
     Topology {
-        neighbors: Neighbors::new(particles, edges),
         grid: Some(resolution),
         flat: true,
         lattice: Some(Lattice {
-            columns,
-            rows,
+            columns: resolution.x,
+            rows: resolution.y,
             spacing: Vec2::new(
                 rest_positions[0].distance(rest_positions[1]),
-                rest_positions[0].distance(rest_positions[columns as usize]),
+                rest_positions[0].distance(rest_positions[resolution.x as usize]),
             ),
         }),
-        source_triangles: (0..triangles.len() as u32).collect(),
-        particle_of_vertex: (0..particles as u32).collect(),
         rest_positions,
-        triangles,
-        constraints,
         ..Default::default()
     }
 }
 
-/// Two triangles for each cell. The diagonals mirror at the middle of the sheet and run through its corners, so that
-/// the triangles are as symmetric as the grid allows, and with them masses, wind and shading.
-fn triangles(columns: u32, rows: u32) -> Vec<[u32; 3]> {
-    let mut triangles = Vec::with_capacity(((columns - 1) * (rows - 1) * 2) as usize);
-    for row in 0..rows - 1 {
-        for column in 0..columns - 1 {
-            let top_left = row * columns + column;
-            let (top_right, bottom_left) = (top_left + 1, top_left + columns);
-            let bottom_right = bottom_left + 1;
-            let left = 2 * column < columns - 1;
-            let top = 2 * row < rows - 1;
-            if left == top {
-                triangles.push([top_left, bottom_left, bottom_right]);
-                triangles.push([top_left, bottom_right, top_right]);
-            } else {
-                triangles.push([top_left, bottom_left, top_right]);
-                triangles.push([top_right, bottom_left, bottom_right]);
-            }
-        }
-    }
-    triangles
+/// How many springs there are.
+pub(super) fn constraint_count(columns: usize, rows: usize) -> usize {
+    let at = |step: usize| {
+        let (c, r) = (columns.saturating_sub(step), rows.saturating_sub(step));
+        c * rows + columns * r + 2 * c * r
+    };
+    at(1) + at(2)
 }
 
 /// The springs, 8 for each particle of a large grid. A spring that spans `step` rows (or columns) shares no particle
 /// with those whose first row, divided by `step`, is even as well: two batches for each direction.
-fn constraints(columns: u32, rows: u32, rest_positions: &[Vec3]) -> DistanceConstraints {
+pub(super) fn constraints(columns: u32, rows: u32, rest_positions: &[Vec3]) -> DistanceConstraints {
     use ConstraintFamily::{Bend, Shear, Stretch};
     const ALONG_ROW: (u32, u32, bool) = (1, 0, false);
     const ALONG_COLUMN: (u32, u32, bool) = (0, 1, false);
@@ -120,28 +92,27 @@ mod tests {
     fn has_the_springs_of_the_classic_scheme() {
         let (c, r) = (7usize, 5usize);
         let t = topology(c as u32, r as u32);
-        let at = |step: usize| {
-            (c - step.min(c)) * r
-                + c * (r - step.min(r))
-                + 2 * (c - step.min(c)) * (r - step.min(r))
-        };
-        assert_eq!(t.constraints.len(), at(1) + at(2));
+        assert_eq!(t.constraints().len(), t.constraint_count());
+        assert_eq!(
+            t.constraint_count(),
+            6 * 5 + 7 * 4 + 2 * 6 * 4 + 5 * 5 + 7 * 3 + 2 * 5 * 3
+        );
         let distinct: HashSet<[u32; 2]> = t
-            .constraints
+            .constraints()
             .ends
             .iter()
             .map(|&[a, b]| [a.min(b), a.max(b)])
             .collect();
-        assert_eq!(distinct.len(), t.constraints.len());
+        assert_eq!(distinct.len(), t.constraints().len());
     }
 
     #[test]
     fn batches_share_no_particle() {
         for (c, r) in [(2, 2), (3, 3), (8, 5), (16, 17)] {
-            for batch in &topology(c, r).constraints.batches {
+            for batch in &topology(c, r).constraints().batches {
                 let mut seen = HashSet::new();
                 let t = topology(c, r);
-                for &particle in t.constraints.ends[batch.range.clone()].iter().flatten() {
+                for &particle in t.constraints().ends[batch.range.clone()].iter().flatten() {
                     assert!(seen.insert(particle), "{c}x{r} {batch:?}");
                 }
             }
@@ -151,11 +122,12 @@ mod tests {
     #[test]
     fn areas_add_up_and_mirror() {
         let t = topology(7, 9);
-        let total: f32 = t.areas.iter().sum();
+        let total: f32 = t.areas().sum();
+        let areas: Vec<f32> = t.areas().collect();
         assert!((total - 2.0).abs() < 1e-5);
         for row in 0..9 {
             for column in 0..7 {
-                let at = |row: usize, column: usize| t.areas[row * 7 + column];
+                let at = |row: usize, column: usize| areas[row * 7 + column];
                 assert!((at(row, column) - at(row, 6 - column)).abs() < 1e-7);
                 assert!((at(row, column) - at(8 - row, column)).abs() < 1e-7);
             }
@@ -163,9 +135,25 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_stored_is_as_if_it_were() {
+        let t = topology(7, 5);
+        let (count, sum) = (t.triangles().len(), t.triangle_areas().sum::<f32>());
+        assert_eq!((count, t.source_triangles().len()), (48, 48));
+        assert!((sum - 2.0).abs() < 1e-5 && (t.cell_area() - sum / 35.0).abs() < 1e-7);
+        assert_eq!(t.triangles().get(47), t.triangles().iter().last());
+        assert_eq!(t.triangles().get(48), None);
+        let mut edges: Vec<_> = t.stretch_edges();
+        let mut springs: Vec<_> = t.constraints().family(ConstraintFamily::Stretch).collect();
+        edges.sort_by_key(|edge| edge.0);
+        springs.sort_by_key(|edge| edge.0);
+        assert_eq!(edges, springs);
+        assert!(t.particles_of_vertices().eq(0..35));
+    }
+
+    #[test]
     fn triangles_face_the_front() {
         let t = topology(4, 4);
-        for tri in &t.triangles {
+        for tri in t.triangles().iter() {
             let [a, b, c] = tri.map(|i| t.rest_positions[i as usize]);
             assert!((b - a).cross(c - a).z > 0.0);
         }

@@ -32,6 +32,7 @@ use std::{collections::HashMap, ops::Range};
 use bevy_math::{DVec3, Vec3};
 
 use super::coloring::color_in_blocks;
+use crate::memory::heap;
 
 /// A triangle whose area is below this part of its longest edge squared has no hinges.
 const DEGENERATE: f64 = 1e-6;
@@ -117,6 +118,15 @@ impl HingeConstraints {
     /// The number of hinges.
     pub fn len(&self) -> usize {
         self.particles.len()
+    }
+
+    /// What they take on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.particles)
+            + heap(&self.coefficients)
+            + heap(&self.areas)
+            + heap(&self.rest_lengths)
+            + heap(&self.batches)
     }
 
     /// Whether there are none.

@@ -10,17 +10,19 @@ pub mod grid;
 pub mod hinges;
 pub mod lattice;
 pub mod mesh_edges;
+pub mod neighbors;
 pub mod order;
 pub mod recognize;
 #[cfg(test)]
 pub(crate) mod test_meshes;
+pub mod triangles;
 pub mod weave;
 pub mod weld;
 
 use std::{
     ops::Deref,
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicU64, Ordering},
     },
 };
@@ -30,11 +32,13 @@ use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
 
 use crate::{cloth::ClothShape, error::ClothErrorKind, memory::heap, validate::check_shape};
-use constraints::{ConstraintFamily, DistanceConstraints};
+use constraints::DistanceConstraints;
 use fabric::Fabric;
 use hinges::HingeConstraints;
 use lattice::Lattice;
+use neighbors::{NeighborLists, Neighbors};
 use order::ParticleOrder;
+use triangles::Triangles;
 
 /// The [`Topology`] of this cloth, shared. Written by [`build_topology`](crate::build::build_topology) alone; empty until then.
 #[derive(Component, Clone, Debug, Default, Reflect)]
@@ -69,66 +73,26 @@ pub struct Topology {
     pub hinges: HingeConstraints,
     /// Whether the particles lie in one plane, nowhere on top of each other.
     pub flat: bool,
-    /// Particles at the corners of each triangle, counter-clockwise seen from the front.
-    pub triangles: Vec<[u32; 3]>,
-    /// For each triangle which one of the source it is.
-    pub source_triangles: Vec<u32>,
-    /// For each vertex of the source the particle that moves it.
-    pub particle_of_vertex: Vec<u32>,
+    /// The triangles of a mesh; none of a grid.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// For each triangle which one of the source it is; empty where they are the same.
+    source_triangles: Vec<u32>,
+    /// For each vertex of the source the particle that moves it; empty for grids, where they are the same.
+    particle_of_vertex: Vec<u32>,
     /// The scale that is part of `rest_positions`.
     pub scale: Vec3,
-    /// Area of each triangle at rest \[m²\].
-    pub triangle_areas: Vec<f32>,
-    /// A third of the area of the triangles around each particle, in a lattice a quarter of the cells around it \[m²\].
-    pub areas: Vec<f32>,
-    /// The springs, in batches that share no particle.
-    pub constraints: DistanceConstraints,
-    /// Particles joined to each particle by an edge.
-    pub neighbors: Neighbors,
+    /// Area of each triangle of a mesh at rest \[m²\]; none of a grid.
+    pub(crate) triangle_areas: Vec<f32>,
+    /// A third of the area of the triangles around each particle \[m²\]; none of a lattice.
+    areas: Vec<f32>,
+    /// Mean area for each particle \[m²\].
+    cell_area: f32,
+    /// Made when they are asked for.
+    constraints: OnceLock<DistanceConstraints>,
+    /// Made when they are asked for; never for a lattice.
+    neighbors: OnceLock<NeighborLists>,
     /// What was left out.
     pub dropped: Vec<ClothErrorKind>,
-}
-
-/// For each particle the particles at the other ends of its edges.
-#[derive(Clone, Debug, Default)]
-pub struct Neighbors {
-    /// Where the list of each particle starts in `particles`; one more than there are particles.
-    offsets: Vec<u32>,
-    particles: Vec<u32>,
-}
-
-impl Neighbors {
-    fn new(particles: usize, edges: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
-        let mut offsets = vec![0u32; particles + 1];
-        for [a, b] in edges.clone() {
-            offsets[a as usize + 1] += 1;
-            offsets[b as usize + 1] += 1;
-        }
-        for i in 0..particles {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut next = offsets.clone();
-        let mut list = vec![0; offsets[particles] as usize];
-        for [a, b] in edges {
-            for (from, to) in [(a, b), (b, a)] {
-                list[next[from as usize] as usize] = to;
-                next[from as usize] += 1;
-            }
-        }
-        Self {
-            offsets,
-            particles: list,
-        }
-    }
-
-    /// The neighbours of one particle; none where the particle is out of range.
-    pub fn of(&self, particle: u32) -> &[u32] {
-        let i = particle as usize;
-        match (self.offsets.get(i), self.offsets.get(i + 1)) {
-            (Some(&start), Some(&end)) => &self.particles[start as usize..end as usize],
-            _ => &[],
-        }
-    }
 }
 
 static REVISION: AtomicU64 = AtomicU64::new(1);
@@ -146,11 +110,8 @@ impl Topology {
         }
         let mut topology = match shape {
             ClothShape::Grid { resolution, .. } => {
-                let rest = shape
-                    .rest_positions()
-                    .into_iter()
-                    .map(|p| p * scale)
-                    .collect();
+                let mut rest = shape.rest_positions();
+                rest.iter_mut().for_each(|p| *p *= scale);
                 grid::build(rest, *resolution)
             }
             ClothShape::Mesh {
@@ -170,54 +131,143 @@ impl Topology {
         self.rest_positions.len()
     }
 
-    /// What a grid takes on the heap, shared by all clones \[byte\]; what only meshes have is not counted.
+    /// Particles at the corners of each triangle, counter-clockwise seen from the front.
+    #[inline]
+    pub fn triangles(&self) -> Triangles<'_> {
+        match self.grid {
+            Some(size) => Triangles::of_grid(size),
+            None => Triangles::of_list(&self.triangles),
+        }
+    }
+
+    /// For each triangle which one of the source it is.
+    pub fn source_triangles(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let of = |triangle| self.source_triangles.get(triangle).copied();
+        (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(triangle as u32))
+    }
+
+    /// The particle that moves a vertex of the source.
+    ///
+    /// # Panics
+    /// When the vertex is out of range.
+    #[inline]
+    pub fn particle_of_vertex(&self, vertex: usize) -> u32 {
+        if self.grid.is_some() {
+            assert!(vertex < self.particles(), "vertex {vertex} of a grid");
+            return vertex as u32;
+        }
+        self.particle_of_vertex[vertex]
+    }
+
+    /// For each vertex of the source the particle that moves it.
+    pub fn particles_of_vertices(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let vertices = if self.grid.is_some() {
+            self.particles()
+        } else {
+            self.particle_of_vertex.len()
+        };
+        (0..vertices).map(|vertex| self.particle_of_vertex(vertex))
+    }
+
+    /// Area of each triangle at rest \[m²\].
+    pub fn triangle_areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        let cell = self.lattice.map_or(0.0, Lattice::cell_area);
+        let of = |triangle| self.triangle_areas.get(triangle).copied();
+        (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(0.5 * cell))
+    }
+
+    /// For each particle a third of the area of the triangles around it, in a lattice a quarter of the cells around it
+    /// \[m²\].
+    pub fn areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        let of = |particle| match self.lattice {
+            // However its cells are cut.
+            Some(lattice) => lattice.area_of(particle),
+            None => self.areas[particle],
+        };
+        (0..self.particles()).map(of)
+    }
+
+    /// The springs of [`ClothSolver::GaussSeidel`](crate::solver::ClothSolver::GaussSeidel), in batches that share no
+    /// particle. They are made when they are asked for first.
+    pub fn constraints(&self) -> &DistanceConstraints {
+        self.constraints.get_or_init(|| match self.grid {
+            Some(size) => grid::constraints(size.x, size.y, &self.rest_positions),
+            None => edges::constraints(&self.triangles, &self.rest_positions),
+        })
+    }
+
+    /// How many springs [`Self::constraints`] has. For a grid they are not made.
+    pub fn constraint_count(&self) -> usize {
+        match self.grid {
+            Some(size) => grid::constraint_count(size.x as usize, size.y as usize),
+            None => self.constraints().len(),
+        }
+    }
+
+    /// Particles joined to one by an edge or a diagonal; none where the particle is out of range.
+    pub fn neighbors(&self, particle: u32) -> Neighbors<'_> {
+        if let Some(lattice) = self.lattice {
+            return Neighbors::in_lattice(lattice, particle);
+        }
+        let lists = self
+            .neighbors
+            .get_or_init(|| edges::neighbors(&self.triangles, &self.rest_positions));
+        Neighbors::Listed(lists.of(particle))
+    }
+
+    /// What it takes on the heap by now, shared by all clones of the [`ClothTopology`] \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        let constraints = &self.constraints;
         heap(&self.rest_positions)
             + heap(&self.triangles)
             + heap(&self.source_triangles)
             + heap(&self.particle_of_vertex)
             + heap(&self.triangle_areas)
             + heap(&self.areas)
-            + heap(&constraints.ends)
-            + heap(&constraints.rest_lengths)
-            + heap(&constraints.batches)
-            + heap(&self.neighbors.offsets)
-            + heap(&self.neighbors.particles)
             + heap(&self.dropped)
+            + self.order.memory_bytes()
+            + self.hinges.memory_bytes()
+            + self.fabric.as_ref().map_or(0, Fabric::memory_bytes)
+            + self
+                .constraints
+                .get()
+                .map_or(0, DistanceConstraints::memory_bytes)
+            + self.neighbors.get().map_or(0, NeighborLists::memory_bytes)
     }
 
     /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.
     pub fn stretch_edges(&self) -> Vec<([u32; 2], f32)> {
-        self.fabric.as_ref().map_or_else(
-            || self.constraints.family(ConstraintFamily::Stretch).collect(),
-            |fabric| fabric.chains().edges().collect(),
-        )
+        let measured = |[a, b]: [u32; 2]| {
+            let [p, q] = [a, b].map(|i| self.rest_positions[i as usize]);
+            ([a, b], p.distance(q))
+        };
+        match (self.lattice, &self.fabric) {
+            (Some(lattice), _) => lattice.edges().map(measured).collect(),
+            (None, Some(fabric)) => fabric.chains().edges().collect(),
+            (None, None) => Vec::new(),
+        }
     }
 
     /// Mean area for each particle \[m²\].
     pub fn cell_area(&self) -> f32 {
-        self.triangle_areas.iter().sum::<f32>() / self.particles().max(1) as f32
+        self.cell_area
     }
 
     fn measure_areas(&mut self) {
-        self.areas = vec![0.0; self.particles()];
-        for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(|i| self.rest_positions[i as usize]);
-            let area = 0.5 * (b - a).cross(c - a).length();
-            self.triangle_areas.push(area);
-            for &i in triangle {
-                self.areas[i as usize] += area / 3.0;
+        if self.grid.is_none() {
+            let area = |triangle: &[u32; 3]| {
+                let [a, b, c] = triangle.map(|i| self.rest_positions[i as usize]);
+                0.5 * (b - a).cross(c - a).length()
+            };
+            self.triangle_areas = self.triangles.iter().map(area).collect();
+        }
+        if self.lattice.is_none() {
+            self.areas = vec![0.0; self.particles()];
+            for (triangle, area) in self.triangles.iter().zip(&self.triangle_areas) {
+                for &i in triangle {
+                    self.areas[i as usize] += area / 3.0;
+                }
             }
         }
-        // However its cells are cut.
-        if let Some(lattice) = self.lattice {
-            let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-            let quarter = 0.25 * lattice.spacing.x * lattice.spacing.y;
-            let beside = |at: usize, len: usize| if at == 0 || at + 1 == len { 1.0 } else { 2.0 };
-            for (i, area) in self.areas.iter_mut().enumerate() {
-                *area = quarter * beside(i % columns, columns) * beside(i / columns, rows);
-            }
-        }
+        self.cell_area = self.triangle_areas().sum::<f32>() / self.particles().max(1) as f32;
     }
 }

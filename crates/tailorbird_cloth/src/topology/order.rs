@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::memory::heap;
+
 /// How particles are numbered.
 ///
 /// Users know a particle by its *given* number: its place in [`Cloth::rest_positions`](crate::cloth::Cloth::rest_positions).
@@ -27,6 +29,13 @@ impl ParticleOrder {
             stored[g as usize] = i as u32;
         }
         Self(Some(Arc::new(Numbers { given, stored })))
+    }
+
+    /// What it takes on the heap, shared by all clones \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        self.0
+            .as_ref()
+            .map_or(0, |numbers| heap(&numbers.given) + heap(&numbers.stored))
     }
 
     /// The stored number of a particle; of one that does not exist, what was given.

@@ -9,5 +9,6 @@ mod bits;
 mod conservation;
 mod elastica;
 mod extreme;
+mod memory;
 mod scene;
 mod stretch;

@@ -60,7 +60,7 @@ pub(super) fn nearest(
 impl ClothsItem<'_, '_> {
     /// The nearest place on this cloth and its distance \[m\], where it is near enough.
     fn locate(&self, visible: VisiblePoint, seconds: f32) -> Option<(Located, f32)> {
-        let (particles, triangles) = (self.particles, &self.topology.triangles);
+        let (particles, triangles) = (self.particles, self.topology.triangles());
         if particles.is_empty() || particles.len() != self.topology.particles() {
             return None;
         }
@@ -76,8 +76,7 @@ impl ClothsItem<'_, '_> {
         let (start, distance) = particles.closest_particle(point)?;
         let edge = self
             .topology
-            .neighbors
-            .of(particles.order().stored(start as u32))
+            .neighbors(particles.order().stored(start as u32))
             .iter()
             .map(|&i| points.get(i as usize).distance(particles.position(start)))
             .fold(0.0, f32::max);
@@ -97,7 +96,7 @@ impl ClothsItem<'_, '_> {
             })
             .min_by(|a, b| a.2.total_cmp(&b.2))?;
 
-        let corners = triangles[triangle].map(|i| i as usize);
+        let corners = triangles.get(triangle)?.map(|i| i as usize);
         let [a, b, c] = corners.map(|i| points.get(i));
         let edge = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
         let speed = corners
@@ -130,7 +129,7 @@ impl Located {
         }
         let indices = cloth
             .topology
-            .triangles
+            .triangles()
             .get(self.triangle)?
             .map(|i| i as usize);
         if indices.iter().any(|&i| i >= cloth.particles.len()) {

@@ -16,7 +16,8 @@ const WIND: Vec3 = Vec3::new(3.0, -1.0, 7.0);
 
 /// A wavy sheet that moves, with two pins.
 struct Wavy {
-    topology: Topology,
+    triangles: Vec<[u32; 3]>,
+    rest_areas: Vec<f32>,
     lattice: Lattice,
     position: Points,
     previous: Points,
@@ -35,12 +36,13 @@ impl Wavy {
             .iter()
             .map(|p| p - 1e-3 * Vec3::new((9.0 * p.y).sin(), p.x, (5.0 * p.x).cos()))
             .collect();
-        let mut inv_mass: Vec<f32> = topology.areas.iter().map(|a| 1.0 / (0.1 * a)).collect();
+        let mut inv_mass: Vec<f32> = topology.areas().map(|a| 1.0 / (0.1 * a)).collect();
         inv_mass[0] = 0.0;
         inv_mass[columns as usize - 1] = 0.0;
         Self {
             lattice: topology.lattice.expect("a grid"),
-            topology,
+            triangles: topology.triangles().iter().collect(),
+            rest_areas: topology.triangle_areas().collect(),
             position,
             previous,
             inv_mass,
@@ -61,8 +63,8 @@ impl Wavy {
     fn one_by_one(&self, air: Air) -> [Points; 2] {
         let [mut drag, mut old] = [(); 2].map(|()| self.start());
         drag_and_lift(
-            &self.topology.triangles,
-            &self.topology.triangle_areas,
+            &self.triangles,
+            &self.rest_areas,
             air,
             &self.position,
             &self.previous,
@@ -71,7 +73,7 @@ impl Wavy {
             &mut drag,
         );
         classic(
-            &self.topology.triangles,
+            &self.triangles,
             air.wind,
             &self.position,
             &self.inv_mass,
@@ -181,8 +183,8 @@ fn times_of_wind() {
         let mut acceleration = sheet.start();
         time("one by one", &mut || {
             drag_and_lift(
-                &sheet.topology.triangles,
-                &sheet.topology.triangle_areas,
+                &sheet.triangles,
+                &sheet.rest_areas,
                 air,
                 &sheet.position,
                 &sheet.previous,

@@ -1,0 +1,124 @@
+//! Who is joined to whom.
+
+use std::ops::Deref;
+
+use super::lattice::Lattice;
+use crate::memory::heap;
+
+/// The particles that are joined to one by an edge or a diagonal.
+#[derive(Clone, Copy, Debug)]
+pub enum Neighbors<'a> {
+    /// Those of a particle of a lattice: up to eight.
+    Around([u32; 8], usize),
+    /// Those of a particle of a mesh.
+    Listed(&'a [u32]),
+}
+
+impl Deref for Neighbors<'_> {
+    type Target = [u32];
+
+    fn deref(&self) -> &[u32] {
+        match self {
+            Self::Around(particles, count) => &particles[..*count],
+            Self::Listed(particles) => particles,
+        }
+    }
+}
+
+impl Neighbors<'_> {
+    /// Those of a particle of a lattice; none where it is out of range.
+    pub(super) fn in_lattice(lattice: Lattice, particle: u32) -> Self {
+        const AROUND: [(i64, i64); 8] = [
+            (1, 0),
+            (-1, 0),
+            (0, 1),
+            (0, -1),
+            (1, 1),
+            (-1, -1),
+            (-1, 1),
+            (1, -1),
+        ];
+        let (columns, rows) = (i64::from(lattice.columns), i64::from(lattice.rows));
+        let (column, row) = (i64::from(particle) % columns, i64::from(particle) / columns);
+        let (mut particles, mut count) = ([0; 8], 0);
+        for (dx, dy) in AROUND {
+            let (x, y) = (column + dx, row + dy);
+            if row < rows && (0..columns).contains(&x) && (0..rows).contains(&y) {
+                particles[count] = (y * columns + x) as u32;
+                count += 1;
+            }
+        }
+        Self::Around(particles, count)
+    }
+}
+
+/// For each particle of a mesh the particles at the other ends of its edges.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NeighborLists {
+    /// Where the list of each particle starts in `particles`; one more than there are particles.
+    offsets: Vec<u32>,
+    particles: Vec<u32>,
+}
+
+impl NeighborLists {
+    pub(super) fn new(particles: usize, edges: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
+        let mut offsets = vec![0u32; particles + 1];
+        for [a, b] in edges.clone() {
+            offsets[a as usize + 1] += 1;
+            offsets[b as usize + 1] += 1;
+        }
+        for i in 0..particles {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut next = offsets.clone();
+        let mut list = vec![0; offsets[particles] as usize];
+        for [a, b] in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                list[next[from as usize] as usize] = to;
+                next[from as usize] += 1;
+            }
+        }
+        Self {
+            offsets,
+            particles: list,
+        }
+    }
+
+    /// The neighbours of one particle; none where the particle is out of range.
+    pub(super) fn of(&self, particle: u32) -> &[u32] {
+        let i = particle as usize;
+        match (self.offsets.get(i), self.offsets.get(i + 1)) {
+            (Some(&start), Some(&end)) => &self.particles[start as usize..end as usize],
+            _ => &[],
+        }
+    }
+
+    pub(super) fn memory_bytes(&self) -> usize {
+        heap(&self.offsets) + heap(&self.particles)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_math::Vec2;
+
+    use super::*;
+
+    #[test]
+    fn those_in_a_lattice_are_the_ones_around() {
+        let lattice = Lattice {
+            columns: 4,
+            rows: 3,
+            spacing: Vec2::ONE,
+        };
+        let sorted = |particle| {
+            let mut around = Neighbors::in_lattice(lattice, particle).to_vec();
+            around.sort_unstable();
+            around
+        };
+        assert_eq!(sorted(0), [1, 4, 5]);
+        assert_eq!(sorted(5), [0, 1, 2, 4, 6, 8, 9, 10]);
+        assert_eq!(sorted(11), [6, 7, 10]);
+        assert_eq!(sorted(12), [0; 0]);
+    }
+}
