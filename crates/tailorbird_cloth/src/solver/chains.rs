@@ -223,6 +223,7 @@ pub(crate) fn damp(
             fabric,
             position,
             previous_position,
+            lost_displacement,
             inv_mass,
             motion,
             viscosity,

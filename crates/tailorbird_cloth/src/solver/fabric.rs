@@ -58,13 +58,9 @@ impl Pass<'_> {
         let pass = HingePass {
             bend_compliance: self.material.bend_compliance.max(0.0),
             seconds: self.seconds,
-            damping: 0.0,
         };
         let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            ..
+            position, inv_mass, ..
         } = particles;
         for batch in &all.batches {
             let range = batch.range.clone();
@@ -74,10 +70,10 @@ impl Pass<'_> {
                 areas: &all.areas[range.clone()],
             };
             if batch.flat {
-                pass.solve_flat(hinges, inv_mass, previous_position, position);
+                pass.solve_flat(hinges, inv_mass, position);
             } else {
                 let rest = &all.rest_lengths[range];
-                pass.solve_curved(hinges, rest, inv_mass, previous_position, position);
+                pass.solve_curved(hinges, rest, inv_mass, position);
             }
         }
     }

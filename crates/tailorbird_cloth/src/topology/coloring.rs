@@ -3,19 +3,47 @@
 /// Tuples of a block in [`color_in_blocks`]: their particles fit the first level of cache.
 const BLOCK: usize = 1536;
 
-/// Gives each tuple the lowest colour that none of its particles has yet, and returns the tuples by colour.
+/// Gives each tuple the lowest colour that none of its particles has yet, and returns the numbers of the tuples by colour.
 ///
 /// Needs at most N times the largest number of tuples at a particle. Deterministic; keeps the order within a colour.
-pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<[u32; N]>> {
+pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<u32>> {
+    let all: Vec<u32> = (0..tuples.len() as u32).collect();
+    color_some(tuples, &all, particles)
+}
+
+/// As [`color`], a block of tuples after the other, so that what is solved one after the other also lies close together. A batch
+/// has tuples of one block alone, by their lowest particle.
+pub fn color_in_blocks<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<u32>> {
+    let mut sorted: Vec<u32> = (0..tuples.len() as u32).collect();
+    sorted.sort_unstable_by_key(|&number| {
+        let tuple = tuples[number as usize];
+        (tuple.iter().min().copied(), tuple)
+    });
+    let blocks = sorted.chunks(BLOCK);
+    blocks
+        .flat_map(|block| color_some(tuples, block, particles))
+        .collect()
+}
+
+fn color_some<const N: usize>(
+    tuples: &[[u32; N]],
+    numbers: &[u32],
+    particles: usize,
+) -> Vec<Vec<u32>> {
+    let some = || {
+        numbers
+            .iter()
+            .map(|&number| (number, tuples[number as usize]))
+    };
     let mut degree = vec![0usize; particles];
-    for &particle in tuples.iter().flatten() {
+    for particle in some().flat_map(|(_, tuple)| tuple) {
         degree[particle as usize] += 1;
     }
     // Enough words of bits at each particle for every colour that can come to meet it.
     let words = degree.iter().max().map_or(0, |most| most * N / 64 + 1);
     let mut used = vec![0u64; particles * words];
-    let mut batches: Vec<Vec<[u32; N]>> = Vec::new();
-    for &tuple in tuples {
+    let mut batches: Vec<Vec<u32>> = Vec::new();
+    for (number, tuple) in some() {
         let bits = tuple.map(|particle| particle as usize * words);
         let Some((word, free)) = (0..words)
             .map(|w| (w, !bits.iter().fold(0, |taken, at| taken | used[at + w])))
@@ -31,20 +59,9 @@ pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<[
         if color >= batches.len() {
             batches.resize_with(color + 1, Vec::new);
         }
-        batches[color].push(tuple);
+        batches[color].push(number);
     }
     batches
-}
-
-/// As [`color`], a block of tuples after the other, so that what is solved one after the other also lies close together. A batch
-/// has tuples of one block alone. Tuples are sorted first.
-pub fn color_in_blocks<const N: usize>(
-    tuples: &mut [[u32; N]],
-    particles: usize,
-) -> Vec<Vec<[u32; N]>> {
-    tuples.sort_unstable_by_key(|tuple| (tuple.iter().min().copied(), *tuple));
-    let blocks = tuples.chunks(BLOCK);
-    blocks.flat_map(|block| color(block, particles)).collect()
 }
 
 #[cfg(test)]
@@ -64,7 +81,7 @@ mod tests {
             prop_assert_eq!(total, pairs.len());
             for batch in batches {
                 let mut seen = std::collections::HashSet::new();
-                for particle in batch.into_iter().flatten() {
+                for particle in batch.into_iter().flat_map(|k| pairs[k as usize]) {
                     prop_assert!(seen.insert(particle));
                 }
             }

@@ -99,6 +99,7 @@ impl DistanceConstraints {
         pairs: &[[u32; 2]],
     ) {
         for batch in color(pairs, rest_positions.len()) {
+            let batch = batch.into_iter().map(|k| pairs[k as usize]);
             self.push_batch(family, rest_positions, batch);
         }
     }

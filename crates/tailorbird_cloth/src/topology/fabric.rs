@@ -150,22 +150,20 @@ impl Springs {
     }
 
     fn new(rest_positions: &[Vec3], weave: &Weave) -> Self {
-        let edges = || {
-            let edges = weave.ends.iter().zip(&weave.family).zip(&weave.scale);
-            edges.filter(|((_, family), _)| **family == EdgeFamily::Shear)
-        };
-        let scales: std::collections::HashMap<[u32; 2], f32> =
-            edges().map(|((ends, _), scale)| (*ends, *scale)).collect();
-        let mut pairs: Vec<[u32; 2]> = edges().map(|((ends, _), _)| *ends).collect();
+        let edges = weave.ends.iter().zip(&weave.family).zip(&weave.scale);
+        let (pairs, scales): (Vec<[u32; 2]>, Vec<f32>) = edges
+            .filter(|((_, family), _)| **family == EdgeFamily::Shear)
+            .map(|((ends, _), scale)| (*ends, *scale))
+            .unzip();
         let mut springs = Self::default();
-        for batch in color_in_blocks(&mut pairs, rest_positions.len()) {
+        for batch in color_in_blocks(&pairs, rest_positions.len()) {
             let start = springs.ends.len();
-            for ends in batch {
+            for k in batch {
+                let ends = pairs[k as usize];
                 let [a, b] = ends.map(|i| rest_positions[i as usize]);
                 springs.ends.push(ends);
                 springs.rest_length.push(a.distance(b));
-                let scale = scales.get(&ends).copied().unwrap_or_default();
-                springs.scale.push(DIAGONAL * scale);
+                springs.scale.push(DIAGONAL * scales[k as usize]);
             }
             springs.batches.push(start..springs.ends.len());
         }

@@ -27,7 +27,7 @@
 //! the particles in between find their own place (grids whose particles are moved by a fifth of a cell: 0 to 16 %, and within
 //! 9 %). With alternating diagonals every other particle then rises a little, and the sheet is a quarter softer than asked.
 
-use std::{collections::HashMap, ops::Range};
+use std::ops::Range;
 
 use bevy_math::{DVec3, Vec3};
 
@@ -80,30 +80,27 @@ impl HingeConstraints {
     /// # Panics
     /// When a triangle's corner is not below the number of particles.
     pub fn new(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Self {
-        let mut hinges = HashMap::new();
-        let [mut flat, mut curved] = [const { Vec::new() }; 2];
+        let [mut flat, mut curved] = [const { (Vec::new(), Vec::new()) }; 2];
         for particles in pairs_of_triangles(triangles) {
             let corners = particles.map(|i| rest_positions[i as usize].as_dvec3());
             let Some(hinge) = hinge(corners) else {
                 continue;
             };
-            hinges.insert(particles, hinge);
-            if hinge.rest_length == 0.0 {
+            let (tuples, hinges) = if hinge.rest_length == 0.0 {
                 &mut flat
             } else {
                 &mut curved
-            }
-            .push(particles);
+            };
+            tuples.push(particles);
+            hinges.push(hinge);
         }
         let mut constraints = Self::default();
-        for (flat, mut tuples) in [(true, flat), (false, curved)] {
-            for batch in color_in_blocks(&mut tuples, rest_positions.len()) {
+        for (flat, (tuples, hinges)) in [(true, flat), (false, curved)] {
+            for batch in color_in_blocks(&tuples, rest_positions.len()) {
                 let start = constraints.len();
-                for particles in batch {
-                    let Some(hinge) = hinges.get(&particles) else {
-                        continue;
-                    };
-                    constraints.particles.push(particles);
+                for k in batch {
+                    let hinge: &Hinge = &hinges[k as usize];
+                    constraints.particles.push(tuples[k as usize]);
                     constraints.coefficients.push(hinge.coefficients);
                     constraints.areas.push(hinge.area);
                     constraints.rest_lengths.push(hinge.rest_length);

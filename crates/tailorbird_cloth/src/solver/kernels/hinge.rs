@@ -5,12 +5,7 @@
 //! Δλ = −C/d, Δxᵢ = wᵢ Kᵢ Δλ with C = D and no square root. Hinges that are folded at rest keep the length of D:
 //! C = D − L u, where u is the unit vector along D, turned to the side to which the hinge is folded at rest.
 //!
-//! Since Σ Kᵢ = 0, momentum is kept; since Σ xᵢ × Kᵢ Δλ = D × Δλ and Δλ points along D, so is angular momentum (all but what the
-//! viscosity takes, which is of second order in the motion of a step).
-//!
-//! # Viscosity
-//! C + γ (D(x) − D(x⁻)) in place of C, with x⁻ the positions at the start of the substep, resists changes of the bending.
-//! The change that the correction itself makes is part of it, hence W = (1 + γ) Σ wᵢ Kᵢ² below.
+//! Since Σ Kᵢ = 0, momentum is kept; since Σ xᵢ × Kᵢ Δλ = D × Δλ and Δλ points along D, so is angular momentum.
 //!
 //! # The denominator
 //! With one pass per substep and multipliers that start at 0, XPBD divides by d = W + α̃, α̃ = α/h². That is right for a hinge
@@ -42,8 +37,6 @@ pub struct HingePass {
     pub bend_compliance: f32,
     /// Length of the substep, h \[s\].
     pub seconds: f32,
-    /// γ, how strongly changes of the bending in a substep are resisted [-].
-    pub damping: f32,
 }
 
 /// A batch of hinges, as parallel slices.
@@ -58,22 +51,16 @@ pub struct Hinges<'a> {
 }
 
 impl HingePass {
-    /// Bends hinges that are flat at rest. `previous` are the positions at the start of the substep \[m\].
+    /// Bends hinges that are flat at rest.
     ///
     /// # Panics
     /// When a particle is not below the number of particles.
-    pub fn solve_flat(
-        &self,
-        hinges: Hinges,
-        inv_mass: &[f32],
-        previous: &Points,
-        position: &mut Points,
-    ) {
-        self.pass(hinges, inv_mass, previous, position, |_, _, d| d);
+    pub fn solve_flat(&self, hinges: Hinges, inv_mass: &[f32], position: &mut Points) {
+        self.pass(hinges, inv_mass, position, |_, _, d| d);
     }
 
     /// Bends hinges of any rest shape. `rest_lengths` \[m\] are those of D with the sign of D · (x₁ − x₀) × (x₃ − x₂) at
-    /// rest; `previous` are the positions at the start of the substep \[m\].
+    /// rest.
     ///
     /// # Panics
     /// When a particle is not below the number of particles.
@@ -82,10 +69,9 @@ impl HingePass {
         hinges: Hinges,
         rest_lengths: &[f32],
         inv_mass: &[f32],
-        previous: &Points,
         position: &mut Points,
     ) {
-        self.pass(hinges, inv_mass, previous, position, |k, corners, d| {
+        self.pass(hinges, inv_mass, position, |k, corners, d| {
             away_from_rest(corners, d, rest_lengths[k])
         });
     }
@@ -96,12 +82,10 @@ impl HingePass {
         &self,
         hinges: Hinges,
         inv_mass: &[f32],
-        previous: &Points,
         position: &mut Points,
         constraint: impl Fn(usize, [Vec3; 4], Vec3) -> Vec3,
     ) {
         let compliance = self.bend_compliance / (self.seconds * self.seconds);
-        let gamma = self.damping;
         let hinges = hinges
             .particles
             .iter()
@@ -114,17 +98,11 @@ impl HingePass {
 
             let d = bending(k, corners);
             let c = constraint(number, corners, d);
-            let change = if gamma > 0.0 {
-                d - bending(k, particles.map(|i| previous.get(i)))
-            } else {
-                Vec3::ZERO
-            };
-
             let own =
                 w[0] * k[0] * k[0] + w[1] * k[1] * k[1] + w[2] * k[2] * k[2] + w[3] * k[3] * k[3];
-            let own = at_least(HEAVIEST, own * (1.0 + gamma));
+            let own = at_least(HEAVIEST, own);
             let denominator = at_least(own, compliance * area + 0.5 * own);
-            let delta = (c + change * gamma) * (-1.0 / denominator);
+            let delta = c * (-1.0 / denominator);
             for i in 0..4 {
                 position.add(particles[i], delta * (w[i] * k[i]));
             }

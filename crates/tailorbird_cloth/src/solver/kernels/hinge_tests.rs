@@ -8,7 +8,7 @@ use crate::topology::hinges::HingeConstraints;
 
 const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [1, 0, 3]];
 
-fn solve(hinges: &HingeConstraints, pass: HingePass, w: &[f32], before: &Points, at: &mut Points) {
+fn solve(hinges: &HingeConstraints, pass: HingePass, w: &[f32], at: &mut Points) {
     for batch in &hinges.batches {
         let range = batch.range.clone();
         let slices = Hinges {
@@ -17,9 +17,9 @@ fn solve(hinges: &HingeConstraints, pass: HingePass, w: &[f32], before: &Points,
             areas: &hinges.areas[range.clone()],
         };
         if batch.flat {
-            pass.solve_flat(slices, w, before, at);
+            pass.solve_flat(slices, w, at);
         } else {
-            pass.solve_curved(slices, &hinges.rest_lengths[range], w, before, at);
+            pass.solve_curved(slices, &hinges.rest_lengths[range], w, at);
         }
     }
 }
@@ -28,7 +28,6 @@ fn rigid() -> HingePass {
     HingePass {
         bend_compliance: 0.0,
         seconds: 1.0 / 480.0,
-        damping: 0.0,
     }
 }
 
@@ -59,7 +58,7 @@ proptest! {
             let turn = Quat::from_axis_angle(axis.normalize(), turn);
             let moved: Points = rest.into_iter().map(|p| turn * p + shift).collect();
             let mut position = moved.clone();
-            solve(&hinges, rigid(), &[1.0, 2.0, 0.5, 1.0], &moved, &mut position);
+            solve(&hinges, rigid(), &[1.0, 2.0, 0.5, 1.0], &mut position);
             for (p, q) in position.iter().zip(moved.iter()) {
                 prop_assert!(p.distance(q) < 1e-5, "{p} {q}");
             }
@@ -76,7 +75,7 @@ proptest! {
             let before: Points = corners.iter().copied().collect();
             let mut position = before.clone();
             let pass = HingePass { bend_compliance: compliance, ..rigid() };
-            solve(&hinges, pass, &w, &before, &mut position);
+            solve(&hinges, pass, &w, &mut position);
             let (mut momentum, mut spin, mut size) = (Vec3::ZERO, Vec3::ZERO, 0.0);
             for (i, w) in w.iter().enumerate() {
                 let impulse = (position.get(i) - before.get(i)) / w;
@@ -100,8 +99,8 @@ proptest! {
                     let hinges = HingeConstraints::new(&TRIANGLES, &folded(rest_angle));
                     let before: Points = corners.iter().copied().collect();
                     let mut position = before.clone();
-                    let pass = HingePass { bend_compliance, damping: 0.5, ..rigid() };
-                    solve(&hinges, pass, &w, &before, &mut position);
+                    let pass = HingePass { bend_compliance, ..rigid() };
+                    solve(&hinges, pass, &w, &mut position);
                     prop_assert!(position.is_finite());
                     for i in (0..4).filter(|&i| w[i] == 0.0) {
                         prop_assert_eq!(position.get(i), before.get(i));
@@ -119,8 +118,7 @@ fn a_fold_is_restored_from_either_side_and_from_flat() {
         for angle in [0.0, 0.3, -0.3, 1.5] {
             let mut position = Points::from_iter(folded(angle));
             for _ in 0..400 {
-                let before = position.clone();
-                solve(&hinges, rigid(), &[1.0; 4], &before, &mut position);
+                solve(&hinges, rigid(), &[1.0; 4], &mut position);
             }
             let corners = [0, 1, 2, 3].map(|i| position.get(i));
             let d = bending(&hinges.coefficients[0], corners);
@@ -132,43 +130,6 @@ fn a_fold_is_restored_from_either_side_and_from_flat() {
             );
         }
     }
-}
-
-#[test]
-fn viscosity_slows_bending_and_not_sliding() {
-    let rest = folded(0.0);
-    let hinges = HingeConstraints::new(&TRIANGLES, &rest);
-    let before = Points::from_iter(rest);
-    let soft = HingePass {
-        bend_compliance: f32::INFINITY,
-        ..rigid()
-    };
-    let stiff = HingePass {
-        bend_compliance: 2e-4,
-        ..rigid()
-    };
-    let moved = |pass: HingePass, steps: [Vec3; 4]| {
-        let mut position: Points = rest
-            .into_iter()
-            .zip(steps)
-            .map(|(p, step)| p + step)
-            .collect();
-        solve(&hinges, pass, &[1.0; 4], &before, &mut position);
-        position.get(3) - rest[3]
-    };
-    let flap = [Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, Vec3::Z * 0.01];
-    let left = |damping| moved(HingePass { damping, ..stiff }, flap).z;
-    assert_eq!(moved(soft, flap).z, 0.01);
-    assert!(left(2.0) < left(0.5) && left(0.5) < left(0.0));
-    let slide = [Vec3::new(0.01, 0.02, 0.03); 4];
-    let slid = moved(
-        HingePass {
-            damping: 2.0,
-            ..stiff
-        },
-        slide,
-    );
-    assert!(slid.distance(slide[0]) < 1e-6);
 }
 
 /// A strip of `columns` × 4 square cells, clamped at its first two columns; `flip` says how its cells are cut. Its inner
@@ -238,7 +199,6 @@ impl Strip {
         let pass = HingePass {
             bend_compliance: 1.0 / rigidity,
             seconds: 1.0 / 480.0,
-            damping: 0.0,
         };
         let mut previous = self.position.clone();
         for _ in 0..20_000 {
@@ -251,13 +211,7 @@ impl Strip {
                     self.position.set(i, now + step);
                 }
             }
-            solve(
-                &self.hinges,
-                pass,
-                &self.inv_mass,
-                &previous,
-                &mut self.position,
-            );
+            solve(&self.hinges, pass, &self.inv_mass, &mut self.position);
         }
         -self.end(|i| self.position.y[i]) / balance
     }

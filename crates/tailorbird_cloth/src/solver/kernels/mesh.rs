@@ -246,8 +246,8 @@ fn spring<S: Simd>(
 }
 
 /// Internal viscosity: neighbours exchange momentum in proportion to the difference of their velocities x − x⁻, after the
-/// rigid motion of the whole was subtracted; x⁻ moves. `viscosity` is that times the time \[m²\], `areal_density` in
-/// kg/m².
+/// rigid motion of the whole was subtracted; x⁻ moves. What rounding takes from that is added to `lost` \[m\], so
+/// that momentum is kept. `viscosity` is that times the time \[m²\], `areal_density` in kg/m².
 ///
 /// # Panics
 /// When there are not as many particles as the fabric has.
@@ -255,6 +255,7 @@ pub fn exchange(
     fabric: &Fabric,
     position: &Points,
     previous: &mut Points,
+    lost: &mut Points,
     inv_mass: &[f32],
     motion: RigidMotion,
     viscosity: f32,
@@ -281,7 +282,10 @@ pub fn exchange(
             }
         }
         for (i, (momentum, w)) in momentum.iter().zip(inv_mass).enumerate() {
-            previous.add(i, Vec3::from_array(*momentum) * -w);
+            let (change, before) = (Vec3::from_array(*momentum) * *w, previous.get(i));
+            let after = before - change;
+            lost.add(i, change - (before - after));
+            previous.set(i, after);
         }
     });
 }
