@@ -69,7 +69,7 @@ fn fingerprint(shape: &ClothShape, scale: Vec3) -> u128 {
             [1, weld_distance.to_bits(), positions.len() as u32]
                 .into_iter()
                 .for_each(&mut write);
-            let coordinates = positions.iter().flat_map(|p| p.to_array());
+            let coordinates = positions.iter().flat_map(Vec3::to_array);
             coordinates.map(f32::to_bits).for_each(&mut write);
             indices.iter().copied().for_each(write);
         }

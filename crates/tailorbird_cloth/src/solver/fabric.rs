@@ -6,15 +6,16 @@ use super::{
         hinge::{HingePass, Hinges},
         lanes::{Shared, SharedPoints},
         mesh::{self, Mesh},
+        packed::{Packed, with_packed},
     },
 };
 use crate::{
     particles::ClothParticles,
-    topology::{Topology, fabric::Fabric, weave::EdgeFamily},
+    topology::{Topology, fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
 
 impl Pass<'_> {
-    /// Shear, then the chains along one of the threads, then along the other.
+    /// The chains along one of the threads, then along the other.
     pub(super) fn solve_fabric(&self, fabric: &Fabric, particles: &mut ClothParticles) {
         let material = self.material;
         let ClothParticles {
@@ -31,11 +32,6 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
         };
-        mesh::solve_shear(
-            self.level,
-            mesh,
-            self.alpha_tilde(material.shear_compliance),
-        );
         let passes = &fabric.chains().passes;
         for k in 0..passes.len() {
             let k = if self.is_odd() {
@@ -52,28 +48,40 @@ impl Pass<'_> {
         }
     }
 
-    /// Bending of what is no flat lattice.
+    /// Bending of what is no flat lattice, then the shear of what is no lattice.
     pub(super) fn bend(&self, topology: &Topology, particles: &mut ClothParticles) {
-        let all = &topology.hinges;
+        let (hinges, fabric) = (&topology.hinges, topology.fabric.as_ref());
+        if hinges.is_empty() && fabric.is_none() {
+            return;
+        }
+        let ClothParticles {
+            position, inv_mass, ..
+        } = particles;
+        with_packed(position, inv_mass, |all| {
+            self.solve_hinges(hinges, all);
+            if let Some(fabric) = fabric {
+                let alpha_tilde = self.alpha_tilde(self.material.shear_compliance);
+                mesh::solve_shear(fabric.shear(), alpha_tilde, all);
+            }
+        });
+    }
+
+    fn solve_hinges(&self, hinges: &HingeConstraints, all: &mut [Packed]) {
         let pass = HingePass {
             bend_compliance: self.material.bend_compliance.max(0.0),
             seconds: self.seconds,
         };
-        let ClothParticles {
-            position, inv_mass, ..
-        } = particles;
-        for batch in &all.batches {
+        for batch in &hinges.batches {
             let range = batch.range.clone();
-            let hinges = Hinges {
-                particles: &all.particles[range.clone()],
-                coefficients: &all.coefficients[range.clone()],
-                areas: &all.areas[range.clone()],
+            let some = Hinges {
+                particles: &hinges.particles[range.clone()],
+                coefficients: &hinges.coefficients[range.clone()],
+                areas: &hinges.areas[range.clone()],
             };
             if batch.flat {
-                pass.solve_flat(hinges, inv_mass, position);
+                pass.solve_flat(some, all);
             } else {
-                let rest = &all.rest_lengths[range];
-                pass.solve_curved(hinges, rest, inv_mass, position);
+                pass.solve_curved(some, &hinges.rest_lengths[range], all);
             }
         }
     }

@@ -191,10 +191,8 @@ fn exchanges(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Exchange> {
             sums[i as usize] += if counts(weight) { *weight } else { 0.0 };
         }
     }
-    edges
-        .ends
-        .iter()
-        .zip(&weights)
+    let some = edges.ends.iter().zip(&weights);
+    let exchanges: Vec<Exchange> = some
         .filter(|(_, weight)| counts(weight))
         .map(|(&ends, &weight)| Exchange {
             ends,
@@ -204,5 +202,10 @@ fn exchanges(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Exchange> {
                 .into_iter()
                 .fold(f32::INFINITY, f32::min),
         })
-        .collect()
+        .collect();
+    // One after the other mostly share no particle: then none has to wait for what the one before has stored.
+    let pairs: Vec<[u32; 2]> = exchanges.iter().map(|exchange| exchange.ends).collect();
+    let batches = color_in_blocks(&pairs, rest_positions.len());
+    let order = batches.into_iter().flatten();
+    order.map(|k| exchanges[k as usize]).collect()
 }

@@ -20,9 +20,9 @@
 //! rigidity says as long as α̃ ≥ W/2, and is softer than asked where it is stiffer than one pass can make it: then more
 //! substeps are needed. Solve batches in the same order in each substep; turning it round makes stiff hinges swing.
 
-use bevy_math::Vec3;
+use bevy_math::{Vec3, Vec4, Vec4Swizzles};
 
-use crate::points::Points;
+use super::packed::{Packed, inv_mass, of_space};
 
 /// A D shorter than this part of its rest length has no direction.
 const SHORTEST: f32 = 1e-6;
@@ -55,8 +55,8 @@ impl HingePass {
     ///
     /// # Panics
     /// When a particle is not below the number of particles.
-    pub fn solve_flat(&self, hinges: Hinges, inv_mass: &[f32], position: &mut Points) {
-        self.pass(hinges, inv_mass, position, |_, _, d| d);
+    pub fn solve_flat(&self, hinges: Hinges, all: &mut [Packed]) {
+        self.pass(hinges, all, |_, _, d| d);
     }
 
     /// Bends hinges of any rest shape. `rest_lengths` \[m\] are those of D with the sign of D · (x₁ − x₀) × (x₃ − x₂) at
@@ -64,15 +64,10 @@ impl HingePass {
     ///
     /// # Panics
     /// When a particle is not below the number of particles.
-    pub fn solve_curved(
-        &self,
-        hinges: Hinges,
-        rest_lengths: &[f32],
-        inv_mass: &[f32],
-        position: &mut Points,
-    ) {
-        self.pass(hinges, inv_mass, position, |k, corners, d| {
-            away_from_rest(corners, d, rest_lengths[k])
+    pub fn solve_curved(&self, hinges: Hinges, rest_lengths: &[f32], all: &mut [Packed]) {
+        self.pass(hinges, all, |k, corners, d| {
+            let c = away_from_rest(corners.map(Vec4::truncate), d.truncate(), rest_lengths[k]);
+            c.extend(0.0)
         });
     }
 
@@ -81,11 +76,11 @@ impl HingePass {
     fn pass(
         &self,
         hinges: Hinges,
-        inv_mass: &[f32],
-        position: &mut Points,
-        constraint: impl Fn(usize, [Vec3; 4], Vec3) -> Vec3,
+        all: &mut [Packed],
+        constraint: impl Fn(usize, [Vec4; 4], Vec4) -> Vec4,
     ) {
         let compliance = self.bend_compliance / (self.seconds * self.seconds);
+        let least = Vec4::splat(HEAVIEST);
         let hinges = hinges
             .particles
             .iter()
@@ -93,18 +88,21 @@ impl HingePass {
             .zip(hinges.areas);
         for (number, ((particles, k), area)) in hinges.enumerate() {
             let particles = particles.map(|i| i as usize);
-            let corners = particles.map(|i| position.get(i));
-            let w = particles.map(|i| inv_mass[i]);
+            let corners = particles.map(|i| Vec4::from_array(all[i]));
+            let k = Vec4::from_array(*k);
+            let k = [k.xxxx(), k.yyyy(), k.zzzz(), k.wwww()];
 
             let d = bending(k, corners);
             let c = constraint(number, corners, d);
-            let own =
-                w[0] * k[0] * k[0] + w[1] * k[1] * k[1] + w[2] * k[2] * k[2] + w[3] * k[3] * k[3];
-            let own = at_least(HEAVIEST, own);
-            let denominator = at_least(own, compliance * area + 0.5 * own);
-            let delta = c * (-1.0 / denominator);
+
+            let [x0, x1, x2, x3] = corners.map(inv_mass);
+            let pulls = [x0 * k[0], x1 * k[1], x2 * k[2], x3 * k[3]];
+            let own = pulls[0] * k[0] + pulls[1] * k[1] + pulls[2] * k[2] + pulls[3] * k[3];
+            let own = own.max(least);
+            let denominator = (Vec4::splat(compliance * area) + own * 0.5).max(own);
+            let delta = of_space(c * (Vec4::NEG_ONE / denominator));
             for i in 0..4 {
-                position.add(particles[i], delta * (w[i] * k[i]));
+                all[particles[i]] = (corners[i] + delta * pulls[i]).to_array();
             }
         }
     }
@@ -112,7 +110,7 @@ impl HingePass {
 
 /// D. Differences first: it must not depend on how far from the origin the cloth is.
 #[inline(always)]
-fn bending(k: &[f32; 4], [x0, x1, x2, x3]: [Vec3; 4]) -> Vec3 {
+fn bending(k: [Vec4; 4], [x0, x1, x2, x3]: [Vec4; 4]) -> Vec4 {
     (x1 - x0) * k[1] + (x2 - x0) * k[2] + (x3 - x0) * k[3]
 }
 
@@ -128,12 +126,6 @@ fn away_from_rest([x0, x1, x2, x3]: [Vec3; 4], d: Vec3, rest_length: f32) -> Vec
     } else {
         d - normal.normalize_or_zero() * rest_length
     }
-}
-
-/// The larger one, as one instruction.
-#[inline(always)]
-fn at_least(least: f32, value: f32) -> f32 {
-    if value > least { value } else { least }
 }
 
 #[cfg(test)]

@@ -4,24 +4,28 @@ use bevy_math::Quat;
 use proptest::prelude::*;
 
 use super::*;
-use crate::topology::hinges::HingeConstraints;
+use crate::{
+    points::Points, solver::kernels::packed::with_packed, topology::hinges::HingeConstraints,
+};
 
 const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [1, 0, 3]];
 
 fn solve(hinges: &HingeConstraints, pass: HingePass, w: &[f32], at: &mut Points) {
-    for batch in &hinges.batches {
-        let range = batch.range.clone();
-        let slices = Hinges {
-            particles: &hinges.particles[range.clone()],
-            coefficients: &hinges.coefficients[range.clone()],
-            areas: &hinges.areas[range.clone()],
-        };
-        if batch.flat {
-            pass.solve_flat(slices, w, at);
-        } else {
-            pass.solve_curved(slices, &hinges.rest_lengths[range], w, at);
+    with_packed(at, w, |all| {
+        for batch in &hinges.batches {
+            let range = batch.range.clone();
+            let slices = Hinges {
+                particles: &hinges.particles[range.clone()],
+                coefficients: &hinges.coefficients[range.clone()],
+                areas: &hinges.areas[range.clone()],
+            };
+            if batch.flat {
+                pass.solve_flat(slices, all);
+            } else {
+                pass.solve_curved(slices, &hinges.rest_lengths[range], all);
+            }
         }
-    }
+    });
 }
 
 fn rigid() -> HingePass {
@@ -121,7 +125,8 @@ fn a_fold_is_restored_from_either_side_and_from_flat() {
                 solve(&hinges, rigid(), &[1.0; 4], &mut position);
             }
             let corners = [0, 1, 2, 3].map(|i| position.get(i));
-            let d = bending(&hinges.coefficients[0], corners);
+            let packed = corners.map(|p| p.extend(0.0));
+            let d = bending(hinges.coefficients[0].map(Vec4::splat), packed).truncate();
             let normal = (corners[1] - corners[0]).cross(corners[3] - corners[2]);
             let signed = d.length().copysign(d.dot(normal));
             assert!(

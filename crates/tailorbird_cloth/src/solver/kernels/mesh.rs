@@ -2,24 +2,25 @@
 //!
 //! Chains are gathered, one into each lane, into scratch that has the form of columns of a sheet, solved by the same kernel as
 //! those, and scattered back. A lane whose chain has ended goes on with copies of its last particle and edges of length 0,
-//! of which nothing comes. Springs are gathered as well, from batches that share no particle.
+//! of which nothing comes. Springs are taken one after the other.
 
 use std::ops::Range;
 
-use bevy_math::Vec3;
+use bevy_math::Vec4;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    lanes::{Factor, Shared, SharedPoints, V3, WIDEST, with_scratch},
+    lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::Block,
     line::{self, MeshLines},
+    packed::{Packed, inv_mass, of_space, squared},
     viscosity::RigidMotion,
 };
 use crate::{
     points::Points,
     topology::{
         chains::{ChainBatch, LANES, NONE},
-        fabric::Fabric,
+        fabric::{Fabric, Springs},
     },
 };
 
@@ -178,71 +179,32 @@ fn solve_batch<S: Simd>(
 }
 
 /// Projects the springs across the threads. `alpha_tilde` is that of a spring whose scale is 1 [1/kg].
-pub(crate) fn solve_shear(level: Level, mesh: Mesh, alpha_tilde: f32) {
-    mesh.check();
-    dispatch!(level, simd => solve_shear_with(simd, mesh, alpha_tilde));
-}
-
-#[inline(always)]
-fn solve_shear_with<S: Simd>(simd: S, mesh: Mesh, alpha_tilde: f32) {
-    let springs = mesh.fabric.shear();
-    let n = S::f32s::LEN;
-    for batch in &springs.batches {
-        let mut k = batch.start;
-        while k < batch.end {
-            let count = (batch.end - k).min(n);
-            // Lanes beyond the end stand for a spring from a particle to itself.
-            let (mut near, mut far) = ([NONE; WIDEST], [NONE; WIDEST]);
-            let (mut rest, mut scale) = ([0.0; WIDEST], [0.0; WIDEST]);
-            for lane in 0..count {
-                [near[lane], far[lane]] = springs.ends[k + lane];
-                rest[lane] = springs.rest_length[k + lane];
-                scale[lane] = springs.scale[k + lane];
-            }
-            spring(simd, mesh, count, [&near, &far], &rest, &scale, alpha_tilde);
-            k += count;
-        }
+///
+/// # Panics
+/// When a particle is not below the number of particles.
+pub(crate) fn solve_shear(springs: &Springs, alpha_tilde: f32, all: &mut [Packed]) {
+    let least = Vec4::splat(HEAVIEST);
+    let springs = springs
+        .ends
+        .iter()
+        .zip(&springs.rest_length)
+        .zip(&springs.scale);
+    for ((ends, &length), &scale) in springs {
+        let ends = ends.map(|i| i as usize);
+        let [a, b] = ends.map(|i| Vec4::from_array(all[i]));
+        let l2 = Vec4::splat(length * length);
+        let alpha = Vec4::splat(scale * alpha_tilde);
+        let d = b - a;
+        let q = squared(d);
+        let excess = q - l2;
+        let [w_a, w_b] = [a, b].map(inv_mass);
+        // As for bending: see `line`.
+        let w = w_a + w_b;
+        let w = (w * 0.5 + alpha).max(w).max(least);
+        let push = of_space((excess + excess) / ((q * 3.0 + l2) * w) * d);
+        all[ends[0]] = (a + w_a * push).to_array();
+        all[ends[1]] = (b - w_b * push).to_array();
     }
-}
-
-#[inline(always)]
-fn spring<S: Simd>(
-    simd: S,
-    mesh: Mesh,
-    count: usize,
-    [near, far]: [&[u32; WIDEST]; 2],
-    rest: &[f32; WIDEST],
-    scale: &[f32; WIDEST],
-    alpha_tilde: f32,
-) {
-    let n = S::f32s::LEN;
-    let valid = |ends: &[u32; WIDEST]| {
-        let mut valid = *ends;
-        valid[count..].fill(ends[0]);
-        valid
-    };
-    let (load_near, load_far) = (valid(near), valid(far));
-    let lanes = |particles| Lanes {
-        particles,
-        run: false,
-    };
-    let a: V3<S> = lanes(&load_near[..n]).load_points(simd, mesh.position);
-    let b: V3<S> = lanes(&load_far[..n]).load_points(simd, mesh.position);
-    let w_a: S::f32s = lanes(&load_near[..n]).load(simd, mesh.inv_mass);
-    let w_b: S::f32s = lanes(&load_far[..n]).load(simd, mesh.inv_mass);
-    let length = S::f32s::from_slice(simd, &rest[..n]);
-    let l2 = length * length;
-    let alpha = S::f32s::from_slice(simd, &scale[..n]) * alpha_tilde;
-    let least = S::f32s::splat(simd, HEAVIEST);
-    let d = b - a;
-    let q = d.dot(d);
-    let excess = q - l2;
-    // As for bending: see `line`.
-    let w = w_a + w_b;
-    let w = (w * 0.5 + alpha).max(w).max(least);
-    let push = Factor((excess + excess) / ((q * 3.0 + l2) * w)) * d;
-    lanes(&near[..n]).store_points(mesh.position, a + Factor(w_a) * push);
-    lanes(&far[..n]).store_points(mesh.position, b - Factor(w_b) * push);
 }
 
 /// Internal viscosity: neighbours exchange momentum in proportion to the difference of their velocities x − x⁻, after the
@@ -256,36 +218,64 @@ pub fn exchange(
     position: &Points,
     previous: &mut Points,
     lost: &mut Points,
-    inv_mass: &[f32],
+    inv_masses: &[f32],
     motion: RigidMotion,
     viscosity: f32,
     areal_density: f32,
 ) {
     let n = fabric.particles();
-    with_scratch(6 * n, |scratch| {
-        let (velocity, momentum) = scratch.split_at_mut(3 * n);
-        let (velocity, _) = velocity.as_chunks_mut::<3>();
-        let (momentum, _) = momentum.as_chunks_mut::<3>();
-        momentum.fill([0.0; 3]);
-        for (i, v) in velocity.iter_mut().enumerate() {
-            let x = position.get(i);
-            let rigid = motion.displacement + motion.rotation.cross(x - motion.center);
-            *v = (x - previous.get(i) - rigid).to_array();
+    assert!(
+        position.is_of(n) && previous.is_of(n) && lost.is_of(n) && inv_masses.len() == n,
+        "a mesh of {n} particles"
+    );
+    with_scratch(8 * n, |scratch| {
+        // The velocity of each, and the momentum that it gets.
+        let moving = scratch.as_chunks_mut::<8>().0;
+        for axis in 0..3 {
+            // The axes that follow.
+            let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
+            let [x, y, z] = [axis, next, last].map(|k| [&position.x, &position.y, &position.z][k]);
+            let before = [&previous.x, &previous.y, &previous.z][axis];
+            let [moved, turn_y, turn_z] = [
+                motion.displacement[axis],
+                motion.rotation[next],
+                motion.rotation[last],
+            ];
+            let [center_y, center_z] = [motion.center[next], motion.center[last]];
+            let places = x.iter().zip(y).zip(z).zip(before);
+            for ((((x, y), z), before), moving) in places.zip(&mut *moving) {
+                let rigid = moved + (turn_y * (z - center_z) - turn_z * (y - center_y));
+                moving[axis] = x - before - rigid;
+            }
+        }
+        for moving in &mut *moving {
+            moving[3..].fill(0.0);
         }
         for exchange in fabric.exchanges() {
             let [a, b] = exchange.ends.map(|i| i as usize);
             let conductance = areal_density * exchange.weight * viscosity.min(exchange.limit);
-            for axis in 0..3 {
-                let flow = conductance * (velocity[b][axis] - velocity[a][axis]);
-                momentum[a][axis] += flow;
-                momentum[b][axis] -= flow;
-            }
+            let halves = |i: usize| {
+                let [v, momentum] = [&moving[i][..4], &moving[i][4..]];
+                [Vec4::from_slice(v), Vec4::from_slice(momentum)]
+            };
+            let [[v_a, of_a], [v_b, of_b]] = [halves(a), halves(b)];
+            let flow = conductance * (v_b - v_a);
+            (of_a + flow).write_to_slice(&mut moving[a][4..]);
+            (of_b - flow).write_to_slice(&mut moving[b][4..]);
         }
-        for (i, (momentum, w)) in momentum.iter().zip(inv_mass).enumerate() {
-            let (change, before) = (Vec3::from_array(*momentum) * *w, previous.get(i));
-            let after = before - change;
-            lost.add(i, change - (before - after));
-            previous.set(i, after);
+        let axes = [
+            (&mut previous.x, &mut lost.x),
+            (&mut previous.y, &mut lost.y),
+            (&mut previous.z, &mut lost.z),
+        ];
+        for (axis, (previous, lost)) in axes.into_iter().enumerate() {
+            let some = previous.iter_mut().zip(lost).zip(inv_masses);
+            for (((previous, lost), w), moving) in some.zip(&*moving) {
+                let change = moving[4 + axis] * w;
+                let before = *previous;
+                *previous = before - change;
+                *lost += change - (before - *previous);
+            }
         }
     });
 }

@@ -11,6 +11,7 @@ pub(crate) mod lattice;
 pub(crate) mod line;
 pub(crate) mod mesh;
 pub mod normals;
+pub mod packed;
 pub mod range;
 pub mod rigid;
 pub mod sphere;

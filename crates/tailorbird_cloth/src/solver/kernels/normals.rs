@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     cells::{AroundParticle, gather, with_cells},
-    lanes::{Factor, SharedPoints, V3, Window},
+    lanes::{Factor, Shared, SharedPoints, V3, Window},
 };
 use crate::{points::Points, topology::lattice::Lattice};
 
@@ -59,7 +59,7 @@ pub(crate) fn smooth_lattice(
     let n = size[0] * size[1];
     assert!(position.is_of(n), "positions of a sheet");
     assert!(
-        [normals.x, normals.y, normals.z].map(|axis| axis.len()) == [n; 3],
+        [normals.x, normals.y, normals.z].map(Shared::len) == [n; 3],
         "normals of a sheet"
     );
     assert!(rows.end <= size[1], "rows of a sheet");

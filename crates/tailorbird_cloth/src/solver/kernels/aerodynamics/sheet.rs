@@ -10,7 +10,7 @@ use crate::{
     points::Points,
     solver::kernels::{
         cells::{AroundParticle, gather, with_cells},
-        lanes::{Factor, Reading, SharedPoints, V3, Window},
+        lanes::{Factor, Reading, Shared, SharedPoints, V3, Window},
     },
     topology::lattice::Lattice,
 };
@@ -46,7 +46,7 @@ impl AirSheet<'_> {
             self.position.is_of(n)
                 && self.previous.is_of(n)
                 && self.inv_mass.len() == n
-                && acceleration.map(|axis| axis.len()) == [n; 3],
+                && acceleration.map(Shared::len) == [n; 3],
             "a sheet of {} x {} particles",
             size[0],
             size[1]
