@@ -3,13 +3,14 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use fearless_simd::Level;
 
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
-    sleep::ClothRest,
     solver::kernels::range::range,
-    step::{ClothStep, for_each_cloth},
+    stages::{ClothStages, ClothStagesItem},
+    step::{ClothStep, for_each_awake},
 };
 
 /// The box, in the cloth's frame, around all particles after the last two steps, and so around everything interpolated
@@ -31,27 +32,36 @@ impl ClothBounds {
 }
 
 /// Computes the boxes of all cloths.
-pub fn update_bounds(
-    step: Res<ClothStep>,
-    mut cloths: Query<(&ClothRest, &ClothParticles, &mut ClothBounds), With<Cloth>>,
-) {
-    for_each_cloth!(step, cloths, |(rest, particles, mut bounds): (
-        &ClothRest,
-        &ClothParticles,
-        Mut<ClothBounds>
-    )| {
-        if rest.is_asleep() || particles.is_empty() {
-            return;
+pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+        cloth.update_bounds(step.level());
+    });
+}
+
+impl ClothStagesItem<'_, '_> {
+    /// What [`update_bounds`] does for one cloth.
+    pub(crate) fn update_bounds(&mut self, level: Level) {
+        if let Some(bounds) = ClothBounds::around(level, &self.particles) {
+            self.bounds.set_if_neq(bounds);
         }
-        let range = |values: &[f32], ends| range(step.level(), values, ends);
+    }
+}
+
+impl ClothBounds {
+    /// The box around all particles, now and a step ago; `None` where there are none.
+    pub(crate) fn around(level: Level, particles: &ClothParticles) -> Option<Self> {
+        if particles.is_empty() {
+            return None;
+        }
+        let range = |values: &[f32], ends| range(level, values, ends);
         let (now, before) = (&particles.position, &particles.step_position);
         let empty = (f32::INFINITY, f32::NEG_INFINITY);
         let x = range(&before.x, range(&now.x, empty));
         let y = range(&before.y, range(&now.y, empty));
         let z = range(&before.z, range(&now.z, empty));
-        bounds.set_if_neq(ClothBounds {
+        Some(Self {
             min: Vec3::new(x.0, y.0, z.0),
             max: Vec3::new(x.1, y.1, z.1),
-        });
-    });
+        })
+    }
 }

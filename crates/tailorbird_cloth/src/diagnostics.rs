@@ -12,7 +12,8 @@ use crate::{particles::ClothParticles, topology::Topology};
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothStepTime {
-    /// All substeps.
+    /// All substeps; with wind, normals, boxes and checks where nobody has systems in
+    /// [`ClothSubstep`](crate::schedule::ClothSubstep).
     pub simulate: Duration,
     /// The whole step, from the first system of [`ClothSystems::Prepare`](crate::schedule::ClothSystems) to the last of
     /// `Writeback`.

@@ -3,15 +3,16 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use fearless_simd::Level;
 
 use crate::{
     cloth::Cloth,
-    particles::ClothParticles,
+    crew::Crew,
     points::Points,
-    sleep::ClothRest,
     solver::kernels::{lanes::SharedPoints, normals},
+    stages::{ClothStages, ClothStagesItem},
     step::{ClothStep, for_each_cloth},
-    topology::ClothTopology,
+    topology::Topology,
 };
 
 /// Which normals a cloth is shaded with.
@@ -78,48 +79,34 @@ impl ClothNormals {
 }
 
 /// Computes the normals of all cloths.
-pub fn recompute_normals(
-    step: Res<ClothStep>,
-    mut cloths: Query<
-        (
-            &ClothRest,
-            &ClothTopology,
-            &ClothShading,
-            &ClothParticles,
-            &mut ClothNormals,
-        ),
-        With<Cloth>,
-    >,
-) {
-    for_each_cloth!(step, cloths, |(
-        rest,
-        topology,
-        shading,
-        particles,
-        mut normals,
-    ): (
-        &ClothRest,
-        &ClothTopology,
-        &ClothShading,
-        &ClothParticles,
-        Mut<ClothNormals>
-    )| {
-        if particles.is_empty() {
+pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+        // One that sleeps may be shaded in another way, or be rebuilt while time stands still.
+        if !cloth.rest.is_asleep() || cloth.normals.are_stale(cloth.topology, *cloth.shading) {
+            cloth.recompute_normals(step.level(), Crew::ALONE);
+        }
+    });
+}
+
+impl ClothNormals {
+    fn are_stale(&self, topology: &Topology, shading: ClothShading) -> bool {
+        self.revision != topology.revision || self.shading != shading
+    }
+}
+
+impl ClothStagesItem<'_, '_> {
+    /// What [`recompute_normals`] does for one cloth.
+    pub(crate) fn recompute_normals(&mut self, level: Level, crew: Crew) {
+        let (topology, shading) = (self.topology, *self.shading);
+        let position = &self.particles.position;
+        if position.is_empty() {
             return;
         }
+        let stale = self.normals.are_stale(topology, shading);
         let ClothNormals {
-            current,
-            previous,
-            shading: shading_before,
-            revision,
-        } = &mut *normals;
-        let fresh = *revision != topology.revision || shading_before != shading;
-        if rest.is_asleep() && !fresh {
-            return;
-        }
-        if fresh {
-            *revision = topology.revision;
-            *shading_before = *shading;
+            current, previous, ..
+        } = &mut *self.normals;
+        if stale {
             let len = match shading {
                 ClothShading::Smooth => topology.particles(),
                 ClothShading::Flat => topology.triangles().len(),
@@ -127,23 +114,25 @@ pub fn recompute_normals(
             *current = std::iter::repeat_n(Vec3::Z, len).collect();
         }
         previous.copy_from(current);
-        match shading {
-            ClothShading::Smooth => match &topology.lattice {
-                // The cells of a mesh are cut in its own way.
-                Some(lattice) if topology.grid.is_some() => {
-                    let rows = 0..lattice.rows as usize;
-                    let current = SharedPoints::new(current);
-                    let position = &particles.position;
-                    normals::smooth_lattice(step.level(), lattice, position, current, rows);
-                }
-                _ => normals::smooth(&topology.triangles, &particles.position, current),
-            },
-            ClothShading::Flat => {
-                normals::flat(topology.triangles().iter(), &particles.position, current);
+        match (shading, &topology.lattice, topology.grid) {
+            // The cells of a mesh are cut in its own way.
+            (ClothShading::Smooth, Some(lattice), Some(_)) => {
+                let current = SharedPoints::new(current);
+                crew.share(0..lattice.rows as usize, |rows| {
+                    normals::smooth_lattice(level, lattice, position, current, rows);
+                });
+            }
+            (ClothShading::Smooth, ..) => {
+                normals::smooth(&topology.triangles, position, current);
+            }
+            (ClothShading::Flat, ..) => {
+                normals::flat(topology.triangles().iter(), position, current);
             }
         }
-        if fresh {
+        if stale {
             previous.copy_from(current);
+            self.normals.revision = topology.revision;
+            self.normals.shading = shading;
         }
-    });
+    }
 }

@@ -22,14 +22,14 @@ use crate::{
     normals::recompute_normals,
     pins::apply_pins,
     prelude::*,
-    runner::{OwnStages, game_has_stages, simulate_cloths},
+    runner::{OwnStages, simulate_cloths},
     schedule::run_substeps,
     sleep::{rest_cloths, wake_cloths},
     solver::{solve_constraints, verlet_step},
-    step::{begin_step, plan_substeps, step_runs},
+    step::{begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
     validate::guard_finite,
-    wind::apply_wind,
+    wind::{BlowingWind, apply_wind, prepare_wind},
 };
 
 /// Simulates cloth. Needs `TimePlugin` and `TaskPoolPlugin` (both part of Bevy's `MinimalPlugins`), nothing else.
@@ -61,7 +61,8 @@ impl Plugin for ClothPlugin {
             .init_resource::<ClothStep>()
             .init_resource::<ClothStepTime>()
             .init_resource::<ClothColliders>()
-            .init_resource::<Wind>();
+            .init_resource::<Wind>()
+            .init_resource::<BlowingWind>();
 
         app.configure_sets(
             self.schedule,
@@ -84,28 +85,36 @@ impl Plugin for ClothPlugin {
                     apply_pins,
                     build_tethers,
                     plan_substeps,
-                    snapshot_colliders.run_if(step_runs),
+                    (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
                     wake_cloths,
-                    (apply_grab, apply_forces, apply_wind)
+                    (
+                        apply_grab,
+                        apply_forces,
+                        apply_wind.run_if(not(step_is_whole)),
+                    )
                         .chain()
                         .run_if(step_runs),
                 )
                     .chain()
                     .in_set(ClothSystems::Prepare),
                 (
-                    simulate_cloths.run_if(step_runs.and_then(not(game_has_stages))),
+                    simulate_cloths.run_if(step_is_whole),
                     run_substeps
-                        .run_if(step_runs.and_then(game_has_stages))
+                        .run_if(step_runs.and_then(not(step_is_whole)))
                         // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
                         .ambiguous_with(signal_message_update_system),
                 )
                     .chain()
                     .in_set(ClothSystems::Simulate),
                 (
-                    guard_finite.run_if(step_runs),
-                    recompute_normals,
-                    update_bounds,
-                    rest_cloths.run_if(step_runs),
+                    (
+                        guard_finite.run_if(step_runs),
+                        recompute_normals,
+                        update_bounds,
+                        rest_cloths.run_if(step_runs),
+                    )
+                        .chain()
+                        .run_if(not(step_is_whole)),
                     stop_clock,
                 )
                     .chain()

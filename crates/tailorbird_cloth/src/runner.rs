@@ -1,6 +1,6 @@
-//! Takes cloths through all substeps of a step, one by one.
+//! Takes cloths through a step, one by one.
 //!
-//! Where nobody but this crate has systems in [`ClothSubstep`], nothing has to happen between the stages of a substep, and a cloth
+//! Where nobody but this crate has systems in [`ClothSubstep`], nothing has to happen between the stages of a step, and a cloth
 //! can go through all of them while it is in the cache. Many small cloths are shared out to threads; a large one has all
 //! threads to itself.
 
@@ -16,11 +16,10 @@ use crate::{
     collider::ClothColliders,
     crew::{Crew, Desk},
     diagnostics::ClothStepTime,
-    particles::ClothParticles,
     schedule::ClothSubstep,
-    sleep::ClothRest,
     stages::{ClothStages, ClothStagesItem},
     step::{ClothStep, for_each_awake},
+    wind::BlowingWind,
 };
 
 /// From this many particles on a cloth is worked on by all threads, and not shared out with others.
@@ -28,7 +27,7 @@ pub(crate) const LARGE: usize = 16_384;
 
 /// The systems that this crate has in [`ClothSubstep`].
 #[derive(Resource, Debug, Default)]
-pub(crate) struct OwnStages(Vec<SystemKey>);
+pub struct OwnStages(Vec<SystemKey>);
 
 impl OwnStages {
     /// Those that are there now.
@@ -45,47 +44,56 @@ fn systems(schedule: &Schedule) -> impl Iterator<Item = SystemKey> {
     })
 }
 
-/// Run condition: a game put systems of its own into [`ClothSubstep`], or conditions, or took systems out.
-pub(crate) fn game_has_stages(schedules: Res<Schedules>, own: Res<OwnStages>) -> bool {
-    let Some(schedule) = schedules.get(ClothSubstep) else {
-        return true;
-    };
-    let graph = schedule.graph();
-    let mut sets = graph.system_sets.iter();
-    !systems(schedule).eq(own.0.iter().copied())
-        || systems(schedule).any(|key| graph.systems.has_conditions(key))
-        || sets.any(|(_, _, conditions)| !conditions.is_empty())
+impl OwnStages {
+    /// Whether [`ClothSubstep`] has these alone: no game put systems or conditions into it, or took any out.
+    pub fn are_all(&self, schedules: &Schedules) -> bool {
+        let Some(schedule) = schedules.get(ClothSubstep) else {
+            return false;
+        };
+        let graph = schedule.graph();
+        let mut sets = graph.system_sets.iter();
+        systems(schedule).eq(self.0.iter().copied())
+            && !systems(schedule).any(|key| graph.systems.has_conditions(key))
+            && !sets.any(|(_, _, conditions)| !conditions.is_empty())
+    }
 }
 
-/// Takes each cloth through all its substeps.
+/// Takes each cloth through a whole step.
 pub(crate) fn simulate_cloths(
     step: Res<ClothStep>,
+    wind: Res<BlowingWind>,
     colliders: Res<ClothColliders>,
     mut time: ResMut<ClothStepTime>,
     mut cloths: Query<ClothStages, With<Cloth>>,
+    commands: ParallelCommands,
 ) {
     let start = Instant::now();
     let simulate = |cloth: &mut ClothStagesItem, crew: Crew| {
+        cloth.particles.begin_step();
+        wind.blow(&step, crew, cloth);
         let count = step.substeps_of(*cloth.solver, cloth.topology);
         for index in 0..count {
-            cloth.run(&step.nth_of(index, count, crew), &colliders);
+            cloth.substep(&step.nth_of(index, count, crew), &colliders);
         }
+        cloth.guard(&commands);
+        cloth.recompute_normals(step.level(), crew);
+        cloth.update_bounds(step.level());
+        cloth.rest(&step, &wind, &colliders);
     };
-    let is_large = |particles: &ClothParticles| particles.len() >= LARGE;
-    let large =
-        |rest: &ClothRest, particles: &ClothParticles| !rest.is_asleep() && is_large(particles);
+    let is_large = |cloth: &ClothStagesItem| cloth.particles.len() >= LARGE;
+    let mut large = 0;
+    for cloth in &mut cloths {
+        large += usize::from(is_large(&cloth) && !cloth.rest.is_asleep());
+    }
     for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
-        if !is_large(&cloth.particles) {
+        if !is_large(&cloth) {
             simulate(&mut cloth, Crew::ALONE);
         }
     });
-    if cloths
-        .iter()
-        .any(|cloth| large(cloth.rest, cloth.particles))
-    {
+    if large > 0 {
         Desk::open(|crew| {
             for mut cloth in &mut cloths {
-                if large(cloth.rest, &cloth.particles) {
+                if is_large(&cloth) && !cloth.rest.is_asleep() {
                     simulate(&mut cloth, crew);
                 }
             }

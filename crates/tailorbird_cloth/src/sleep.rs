@@ -18,9 +18,10 @@ use crate::{
     particles::ClothParticles,
     pins::ClothPins,
     solver::ClothSolver,
-    step::{ClothStep, for_each_cloth},
+    stages::{ClothStages, ClothStagesItem},
+    step::{ClothStep, for_each_awake},
     topology::ClothTopology,
-    wind::{Wind, WindModel},
+    wind::{BlowingWind, WindModel},
 };
 
 /// When a cloth falls asleep: after it has been at rest for some time. At rest is, when no more than 1 % of its particles are
@@ -134,7 +135,7 @@ const ROOM: f32 = 0.02;
 
 fn around(
     step: &ClothStep,
-    wind: &Wind,
+    wind: &BlowingWind,
     colliders: &ClothColliders,
     frame: &ClothFrame,
     bounds: &ClothBounds,
@@ -149,11 +150,7 @@ fn around(
         gravity: step.gravity(),
         substeps: step.fixed_substeps,
         iterations: step.iterations(),
-        air: (
-            wind.velocity_at(step.elapsed()),
-            wind.model,
-            wind.air_density,
-        ),
+        air: wind.kind(),
         colliders: hasher.finish(),
     }
 }
@@ -161,7 +158,7 @@ fn around(
 /// Wakes the cloths to which something happened since they fell asleep.
 pub fn wake_cloths(
     step: Res<ClothStep>,
-    wind: Res<Wind>,
+    wind: Res<BlowingWind>,
     colliders: Res<ClothColliders>,
     mut cloths: Query<
         (
@@ -207,54 +204,49 @@ pub fn wake_cloths(
 /// Measures how long the cloths have been at rest, and lets them fall asleep.
 pub fn rest_cloths(
     step: Res<ClothStep>,
-    wind: Res<Wind>,
+    wind: Res<BlowingWind>,
     colliders: Res<ClothColliders>,
-    mut cloths: Query<
-        (
-            &mut ClothRest,
-            &ClothSleep,
-            &ClothMaterial,
-            &ClothFrame,
-            &ClothBounds,
-            &mut ClothParticles,
-        ),
-        With<Cloth>,
-    >,
+    mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_cloth!(step, cloths, |(
-        mut rest,
-        sleep,
-        material,
-        frame,
-        bounds,
-        mut particles,
-    ): (
-        Mut<ClothRest>,
-        &ClothSleep,
-        &ClothMaterial,
-        &ClothFrame,
-        &ClothBounds,
-        Mut<ClothParticles>
-    )| {
-        if !sleep.enabled || rest.is_asleep() || particles.is_empty() || !sleep.errors().is_empty()
-        {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+        cloth.rest(&step, &wind, &colliders);
+    });
+}
+
+impl ClothStagesItem<'_, '_> {
+    /// What [`rest_cloths`] does for one cloth.
+    pub(crate) fn rest(
+        &mut self,
+        step: &ClothStep,
+        wind: &BlowingWind,
+        colliders: &ClothColliders,
+    ) {
+        let sleep = self.sleep;
+        if !sleep.enabled || self.particles.is_empty() || !sleep.errors().is_empty() {
             return;
         }
         let seconds = step.seconds();
-        if !particles.is_at_rest(sleep.speed * seconds) {
-            rest.set_if_neq(ClothRest::default());
+        if !self.particles.is_at_rest(sleep.speed * seconds) {
+            self.rest.set_if_neq(ClothRest::default());
             return;
         }
-        rest.seconds += seconds;
-        // NaN never is.
-        if rest.seconds >= sleep.seconds {
-            particles.stop();
-            rest.asleep = Some(Asleep {
+        self.rest.seconds += seconds;
+        if self.rest.seconds >= sleep.seconds {
+            self.particles.stop();
+            let around = around(
+                step,
+                wind,
+                colliders,
+                &self.frame,
+                &self.bounds,
+                self.material,
+            );
+            self.rest.asleep = Some(Asleep {
                 step: step.steps(),
-                around: around(&step, &wind, &colliders, frame, bounds, material),
+                around,
             });
         }
-    });
+    }
 }
 
 impl ClothParticles {

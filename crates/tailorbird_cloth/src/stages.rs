@@ -1,16 +1,19 @@
-//! The stages of a substep, for one cloth at a time.
+//! The stages of a step, for one cloth at a time.
 
-use bevy_ecs::query::QueryData;
+use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_math::Vec3;
 use fearless_simd::Level;
 
 use crate::{
+    bounds::ClothBounds,
     collider::ClothColliders,
     crew::Crew,
+    error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,
+    normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
-    sleep::ClothRest,
+    sleep::{ClothRest, ClothSleep},
     solver::{self, ClothSolver},
     tethers::ClothTethers,
     topology::ClothTopology,
@@ -48,22 +51,28 @@ impl Substep<'_> {
     }
 }
 
-/// What the stages of a substep need of a cloth. Opaque: the cloth's components are what to read.
+/// What the stages need of a cloth. Opaque: the cloth's components are what to read.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub struct ClothStages {
+    pub(crate) entity: Entity,
     pub(crate) topology: &'static ClothTopology,
     pub(crate) material: &'static ClothMaterial,
     pub(crate) solver: &'static ClothSolver,
-    pub(crate) rest: &'static ClothRest,
+    pub(crate) shading: &'static ClothShading,
+    pub(crate) sleep: &'static ClothSleep,
     pub(crate) tethers: &'static ClothTethers,
     pub(crate) frame: &'static mut ClothFrame,
     pub(crate) particles: &'static mut ClothParticles,
+    pub(crate) normals: &'static mut ClothNormals,
+    pub(crate) bounds: &'static mut ClothBounds,
+    pub(crate) rest: &'static mut ClothRest,
+    pub(crate) status: &'static mut ClothStatus,
 }
 
 impl ClothStagesItem<'_, '_> {
     /// All stages of a substep, in the order of [`ClothSubstep`](crate::schedule::ClothSubstep).
-    pub(crate) fn run(&mut self, substep: &Substep, colliders: &ClothColliders) {
+    pub(crate) fn substep(&mut self, substep: &Substep, colliders: &ClothColliders) {
         self.frame.advance(substep, &mut self.particles);
         solver::integrate(substep, self);
         colliders.approach(substep, self);

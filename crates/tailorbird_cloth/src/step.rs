@@ -11,6 +11,7 @@ use crate::{
     cloth::Cloth,
     crew::Crew,
     particles::ClothParticles,
+    runner::OwnStages,
     settings::ClothSettings,
     sleep::ClothRest,
     solver::ClothSolver,
@@ -34,6 +35,7 @@ pub struct ClothStep {
     pub(crate) steps: u64,
     pub(crate) running: bool,
     pub(crate) parallel: bool,
+    pub(crate) whole: bool,
     #[reflect(ignore)]
     pub(crate) level: SimdLevel,
 }
@@ -145,6 +147,11 @@ impl ClothStep {
     }
 }
 
+/// Run condition: each cloth goes through the step by itself, as nobody has anything to do between its stages.
+pub(crate) fn step_is_whole(step: Res<ClothStep>) -> bool {
+    step.whole
+}
+
 /// Run condition: this tick simulates.
 pub fn step_runs(step: Res<ClothStep>) -> bool {
     step.running
@@ -158,6 +165,7 @@ pub fn begin_step(
     mut settings: ResMut<ClothSettings>,
     mut valid: Local<ClothSettings>,
     time: Res<Time>,
+    (schedules, own): (Res<Schedules>, Res<OwnStages>),
     mut cloths: Query<(&ClothRest, &mut ClothParticles), With<Cloth>>,
 ) {
     if settings.is_changed() {
@@ -188,6 +196,7 @@ pub fn begin_step(
     step.gravity = valid.gravity;
     step.running = step.seconds > 0.0 && (!settings.paused || single_step);
     step.steps += u64::from(step.running);
+    step.whole = step.running && own.are_all(&schedules);
 
     let (mut count, mut particles) = (0, 0);
     for (rest, mut cloth) in &mut cloths {
@@ -196,8 +205,10 @@ pub fn begin_step(
         }
         count += 1;
         particles += cloth.len();
-        // Also while paused: then both ends of the interpolation agree.
-        cloth.begin_step();
+        if !step.whole {
+            // Also while paused: then both ends of the interpolation agree.
+            cloth.begin_step();
+        }
     }
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
 }

@@ -7,9 +7,8 @@ use bevy_reflect::prelude::*;
 use crate::{
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
-    particles::ClothParticles,
-    sleep::ClothRest,
-    step::{ClothStep, for_each_cloth},
+    stages::{ClothStages, ClothStagesItem},
+    step::{ClothStep, for_each_awake},
 };
 
 /// A cloth was put back to an earlier state.
@@ -103,38 +102,36 @@ pub(crate) fn check_shape(shape: &ClothShape) -> Result<(), ClothErrorKind> {
 /// Puts a cloth whose state is not finite back to the start of the step.
 pub fn guard_finite(
     step: Res<ClothStep>,
-    mut cloths: Query<(Entity, &ClothRest, &mut ClothParticles, &mut ClothStatus), With<Cloth>>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
     commands: ParallelCommands,
 ) {
-    for_each_cloth!(
-        step,
-        cloths,
-        |(entity, rest, mut particles, mut status): (
-            Entity,
-            &ClothRest,
-            Mut<ClothParticles>,
-            Mut<ClothStatus>
-        )| {
-            if rest.is_asleep()
-                || particles.position.is_finite() && particles.previous_position.is_finite()
-            {
-                return;
-            }
-            let particle = particles
-                .positions()
-                .position(|p| !p.is_finite())
-                .unwrap_or_default();
-            particles.reset_to_step_start();
-            let error = ClothErrorKind::NonFiniteState { particle };
-            if status.is_ok_for(ErrorSource::State) {
-                ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, [error]);
-            }
-            commands.command_scope(|mut commands| {
-                commands.trigger(ClothReset {
-                    entity,
-                    reason: ResetReason::NonFinite,
-                });
-            });
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+        cloth.guard(&commands);
+    });
+}
+
+impl ClothStagesItem<'_, '_> {
+    /// What [`guard_finite`] does for one cloth.
+    pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
+        let particles = &*self.particles;
+        if particles.position.is_finite() && particles.previous_position.is_finite() {
+            return;
         }
-    );
+        let particle = particles
+            .positions()
+            .position(|p| !p.is_finite())
+            .unwrap_or_default();
+        self.particles.reset_to_step_start();
+        let (entity, status) = (self.entity, &mut self.status);
+        let error = ClothErrorKind::NonFiniteState { particle };
+        if status.is_ok_for(ErrorSource::State) {
+            ClothStatus::update(status, entity, commands, ErrorSource::State, [error]);
+        }
+        commands.command_scope(|mut commands| {
+            commands.trigger(ClothReset {
+                entity,
+                reason: ResetReason::NonFinite,
+            });
+        });
+    }
 }

@@ -9,17 +9,15 @@ use tracing::error;
 
 use crate::{
     cloth::Cloth,
+    crew::Crew,
     error::ClothErrorKind,
-    frame::ClothFrame,
-    material::ClothMaterial,
     particles::ClothParticles,
-    sleep::ClothRest,
     solver::kernels::{
         aerodynamics::{self, Air, AirSheet},
         lanes::SharedPoints,
     },
-    step::{ClothStep, for_each_cloth},
-    topology::ClothTopology,
+    stages::{ClothStages, ClothStagesItem},
+    step::{ClothStep, for_each_awake},
 };
 
 /// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
@@ -151,60 +149,61 @@ impl Wind {
     }
 }
 
-/// Adds the acceleration by the wind, once per step.
+/// The wind in force during this step. Written by [`prepare_wind`] alone.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct BlowingWind {
+    /// The last valid one.
+    valid: Wind,
+    /// In world axes [m/s].
+    velocity: Vec3,
+}
+
+/// Reads how the wind blows in this step.
 ///
 /// An invalid wind is logged once, and the last valid one blows on.
-pub fn apply_wind(
-    step: Res<ClothStep>,
-    wind: Res<Wind>,
-    mut valid: Local<Wind>,
-    mut cloths: Query<
-        (
-            &ClothRest,
-            &ClothTopology,
-            &ClothMaterial,
-            &ClothFrame,
-            &mut ClothParticles,
-        ),
-        With<Cloth>,
-    >,
-) {
+pub fn prepare_wind(step: Res<ClothStep>, wind: Res<Wind>, mut blowing: ResMut<BlowingWind>) {
     if wind.is_changed() {
         let errors = wind.errors();
         for kind in &errors {
             error!("{kind}; the last valid wind blows on");
         }
         if errors.is_empty() {
-            valid.clone_from(&wind);
+            blowing.valid.clone_from(&wind);
         }
     }
-    let velocity = valid.velocity_at(step.elapsed());
-    let (model, density, seconds) = (valid.model, valid.air_density, step.seconds());
-    let nothing = match model {
-        WindModel::Aerodynamic => density == 0.0,
-        WindModel::Classic => velocity == Vec3::ZERO,
-    };
-    if nothing {
-        return;
+    blowing.velocity = blowing.valid.velocity_at(step.elapsed());
+}
+
+/// Adds the acceleration by the wind, once per step.
+pub fn apply_wind(
+    step: Res<ClothStep>,
+    wind: Res<BlowingWind>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+        wind.blow(&step, Crew::ALONE, &mut cloth);
+    });
+}
+
+impl BlowingWind {
+    /// What tells this wind from another: velocity, model and density of the air.
+    pub(crate) fn kind(&self) -> (Vec3, WindModel, f32) {
+        (self.velocity, self.valid.model, self.valid.air_density)
     }
-    for_each_cloth!(step, cloths, |(
-        rest,
-        topology,
-        material,
-        frame,
-        mut particles,
-    ): (
-        &ClothRest,
-        &ClothTopology,
-        &ClothMaterial,
-        &ClothFrame,
-        Mut<ClothParticles>
-    )| {
-        if rest.is_asleep() || particles.is_empty() || !material.errors().is_empty() {
+
+    /// What [`apply_wind`] does to one cloth.
+    pub(crate) fn blow(&self, step: &ClothStep, crew: Crew, cloth: &mut ClothStagesItem) {
+        let (velocity, model, density) = self.kind();
+        let nothing = match model {
+            WindModel::Aerodynamic => density == 0.0,
+            WindModel::Classic => velocity == Vec3::ZERO,
+        };
+        let (topology, material) = (cloth.topology, cloth.material);
+        if nothing || cloth.particles.is_empty() || !material.errors().is_empty() {
             return;
         }
-        let wind = frame.vector_to_frame(velocity);
-        particles.accelerations();
+        let wind = cloth.frame.vector_to_frame(velocity);
+        cloth.particles.accelerations();
         let ClothParticles {
             position,
             previous_position,
@@ -212,14 +211,14 @@ pub fn apply_wind(
             inv_mass,
             substep_seconds,
             ..
-        } = &mut *particles;
+        } = &mut *cloth.particles;
         let air = Air {
             wind,
             density,
             areal_density: material.areal_density,
             drag: material.drag,
             lift: material.lift,
-            seconds,
+            seconds: step.seconds(),
         };
         let per_second = if *substep_seconds > 0.0 {
             substep_seconds.recip()
@@ -227,12 +226,7 @@ pub fn apply_wind(
             0.0
         };
         // The cells of a mesh are cut in its own way.
-        if let Some(lattice) = topology
-            .lattice
-            .as_ref()
-            .filter(|_| topology.grid.is_some())
-        {
-            let rows = 0..lattice.rows as usize;
+        if let (Some(lattice), Some(_)) = (&topology.lattice, topology.grid) {
             let sheet = AirSheet {
                 lattice,
                 position,
@@ -240,20 +234,13 @@ pub fn apply_wind(
                 inv_mass,
                 acceleration: SharedPoints::new(acceleration),
             };
-            match model {
-                WindModel::Classic => {
-                    aerodynamics::classic_on_sheet(step.level(), sheet, wind, rows);
-                }
+            let level = step.level();
+            crew.share(0..lattice.rows as usize, |rows| match model {
+                WindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
                 WindModel::Aerodynamic => {
-                    aerodynamics::drag_and_lift_on_sheet(
-                        step.level(),
-                        sheet,
-                        air,
-                        per_second,
-                        rows,
-                    );
+                    aerodynamics::drag_and_lift_on_sheet(level, sheet, air, per_second, rows);
                 }
-            }
+            });
             return;
         }
         let triangles = &topology.triangles;
@@ -274,5 +261,5 @@ pub fn apply_wind(
                 );
             }
         }
-    });
+    }
 }
