@@ -67,19 +67,24 @@ impl Crew<'_> {
     /// This thread alone.
     pub const ALONE: Crew<'static> = Crew(None);
 
-    /// Calls `work` for parts of the range that together are all of it, and returns when all are done. Parts begin at
-    /// multiples of 16 from the first on.
-    pub fn share(self, all: Range<usize>, work: impl Fn(Range<usize>) + Sync) {
-        let Some(desk) = self.0 else {
-            return work(all);
-        };
+    /// The length of the parts of a range of this length, in [`Self::share`]: a multiple of 16 where there are several.
+    pub fn part(self, len: usize) -> usize {
         const GRAIN: usize = 16;
-        let parts = desk.threads * PARTS_PER_THREAD;
-        let part = all.len().div_ceil(parts).next_multiple_of(GRAIN);
-        if all.len() <= part {
-            return work(all);
+        let parts = self.0.map_or(1, |desk| desk.threads * PARTS_PER_THREAD);
+        len.div_ceil(parts).next_multiple_of(GRAIN).min(len)
+    }
+
+    /// Calls `work` for parts of the range that together are all of it, and returns when all are done.
+    pub fn share(self, all: Range<usize>, work: impl Fn(Range<usize>) + Sync) {
+        self.share_by(self.part(all.len()), all, work);
+    }
+
+    /// [`Self::share`] in parts of this length.
+    pub fn share_by(self, part: usize, all: Range<usize>, work: impl Fn(Range<usize>) + Sync) {
+        match self.0 {
+            Some(desk) if all.len() > part => desk.run(all, part, &work),
+            _ => work(all),
         }
-        desk.run(all, part, &work);
     }
 
     /// [`Self::share`], for work that tells whether it found something: whether any did.

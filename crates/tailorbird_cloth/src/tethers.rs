@@ -9,10 +9,17 @@ use crate::{
     memory::heap,
     particles::ClothParticles,
     points::Points,
-    solver::ClothSolver,
+    solver::{
+        ClothSolver,
+        kernels::{
+            lanes::Reading,
+            tether::{Straight, Tether},
+        },
+    },
     topology::{
         ClothTopology,
         geodesic::{Geodesics, tether_anchors},
+        lattice::Lattice,
     },
 };
 
@@ -32,8 +39,36 @@ pub struct ClothTethers {
 #[derive(Clone, Debug)]
 struct Field {
     pin: u32,
+    ways: Ways,
+}
+
+#[derive(Clone, Debug)]
+enum Ways {
+    /// Along a sheet that is flat at rest.
+    Straight(Lattice, Straight),
     /// One for each particle \[m\].
-    lengths: Vec<f32>,
+    Lengths(Vec<f32>),
+}
+
+impl Ways {
+    /// How far it is to a particle \[m\].
+    fn length(&self, particle: u32) -> Option<f32> {
+        match self {
+            Self::Straight(lattice, straight) => {
+                let (column, row) = (particle % lattice.columns, particle / lattice.columns);
+                (row < lattice.rows).then(|| straight.length(column, row))
+            }
+            Self::Lengths(lengths) => lengths.get(particle as usize).copied(),
+        }
+    }
+}
+
+/// All tethers of a cloth, for the kernels.
+pub(crate) enum Anchors<'a> {
+    /// Of a sheet that is flat at rest.
+    Straight([Option<Tether<Straight>>; ClothTethers::MOST]),
+    /// Of any other cloth.
+    Lengths([Option<Tether<Reading<'a>>>; ClothTethers::MOST]),
 }
 
 impl ClothTethers {
@@ -50,21 +85,52 @@ impl ClothTethers {
         self.fields
             .iter()
             .flatten()
-            .filter_map(move |field| field.lengths.get(particle as usize).copied())
+            .filter_map(move |field| field.ways.length(particle))
     }
 
     /// What the ways take on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let fields = self.fields.iter().flatten();
-        heap(&self.pins) + fields.map(|field| heap(&field.lengths)).sum::<usize>()
+        let ways = fields.map(|field| match &field.ways {
+            Ways::Straight(..) => 0,
+            Ways::Lengths(lengths) => heap(lengths),
+        });
+        heap(&self.pins) + ways.sum::<usize>()
     }
 
     /// Where the pins are, and the ways from each.
-    pub(crate) fn anchors(&self, position: &Points) -> [Option<(Vec3, &[f32])>; Self::MOST] {
-        self.fields.each_ref().map(|field| {
-            let Field { pin, lengths } = field.as_ref()?;
-            let usable = lengths.len() == position.len();
-            usable.then(|| (position.get(*pin as usize), lengths.as_slice()))
+    pub(crate) fn anchors(&self, position: &Points) -> Anchors<'_> {
+        let fields = self.fields.each_ref().map(Option::as_ref);
+        let at = |field: &Field| position.get(field.pin as usize);
+        if let Some(Some(Field {
+            ways: Ways::Straight(lattice, _),
+            ..
+        })) = fields.first()
+        {
+            let usable = (lattice.columns * lattice.rows) as usize == position.len();
+            return Anchors::Straight(fields.map(|field| match &field?.ways {
+                Ways::Straight(_, ways) if usable => Some(Tether {
+                    anchor: at(field?),
+                    ways: *ways,
+                }),
+                _ => None,
+            }));
+        }
+        Anchors::Lengths(fields.map(|field| match &field?.ways {
+            Ways::Lengths(lengths) if lengths.len() == position.len() => Some(Tether {
+                anchor: at(field?),
+                ways: Reading(lengths),
+            }),
+            _ => None,
+        }))
+    }
+
+    /// The point nearest to `p` that a particle gets to, its tethers being `slack` times as long as at rest \[m\].
+    pub(crate) fn reached(&self, particle: u32, p: Vec3, position: &Points, slack: f32) -> Vec3 {
+        self.fields.iter().flatten().fold(p, |p, field| {
+            let anchor = position.get(field.pin as usize);
+            let reach = field.ways.length(particle).map_or(f32::MAX, |l| l * slack);
+            anchor + (p - anchor).clamp_length_max(reach)
         })
     }
 }
@@ -104,12 +170,19 @@ pub fn build_tethers(
         let mut anchors = tether_anchors(&pins, rest, ClothTethers::MOST).into_iter();
         tethers.fields = [(); ClothTethers::MOST].map(|()| {
             let pin = anchors.next()?;
-            let from = *rest.get(pin as usize)?;
-            let lengths = ways.as_ref().map_or_else(
-                || rest.iter().map(|p| p.distance(from)).collect(),
-                |ways| ways.distances(&[pin]),
-            );
-            Some(Field { pin, lengths })
+            let ways = match (&topology.lattice, &ways) {
+                (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
+                (Some(lattice), None) => Ways::Straight(
+                    *lattice,
+                    Straight {
+                        column: pin % lattice.columns,
+                        row: pin / lattice.columns,
+                        spacing: lattice.spacing,
+                    },
+                ),
+                (None, None) => return None,
+            };
+            Some(Field { pin, ways })
         });
     }
 }

@@ -3,18 +3,22 @@
 use fearless_simd::Level;
 
 use super::kernels::{
-    lanes::{Reading, Shared, SharedPoints},
-    lattice::{self, Shear, Sheet},
+    lanes::{Shared, SharedPoints},
+    lattice::{self, Sheet},
     line::LineStiffness,
     mesh,
-    tether::{self, Tether},
-    viscosity::{self, RigidMotion},
+    rigid_motion::RigidMotion,
+    shear::{self, Shear},
+    tether,
+    verlet::Verlet,
+    viscosity::{self, Beside, Motion},
 };
 use crate::{
     crew::Crew,
     material::ClothMaterial,
     particles::ClothParticles,
-    tethers::ClothTethers,
+    stages::Substep,
+    tethers::{Anchors, ClothTethers},
     topology::{Topology, lattice::Lattice},
 };
 
@@ -94,29 +98,33 @@ impl Pass<'_> {
         if particles.len() != topology.particles() || particles.is_empty() {
             return;
         }
-        let anchors = tethers.anchors(&particles.position);
         let slack = self.slack();
-        let tethers = anchors.map(|anchor| {
-            anchor.map(|(anchor, lengths)| Tether {
-                anchor,
-                lengths: Reading(lengths),
-            })
-        });
         // A hand does not pull the cloth further from its pins than it reaches.
         if let Some(held) = particles.grabbed {
             let i = held.particle as usize;
-            let from = particles.position.get(i);
-            let reached = tethers.iter().flatten().fold(from, |p, tether| {
-                let reach = tether.lengths.0.get(i).map_or(f32::MAX, |l| l * slack);
-                tether.anchor + (p - tether.anchor).clamp_length_max(reach)
-            });
-            particles.position.set(i, reached);
+            let position = &mut particles.position;
+            let from = position.get(i);
+            position.set(i, tethers.reached(held.particle, from, position, slack));
         }
         let all = particles.len();
-        let line = sheet(particles, [all, 1]);
-        self.crew.share(0..all, |range| {
-            tether::solve(self.level, line, &tethers, slack, range);
-        });
+        let (level, crew) = (self.level, self.crew);
+        match tethers.anchors(&particles.position) {
+            Anchors::Straight(tethers) => {
+                if let Some(lattice) = &topology.lattice {
+                    let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
+                    let sheet = sheet(particles, [columns, rows]);
+                    crew.share(0..rows, |rows| {
+                        tether::solve_straight(level, sheet, &tethers, slack, rows);
+                    });
+                }
+            }
+            Anchors::Lengths(tethers) => {
+                let sheet = sheet(particles, [all, 1]);
+                crew.share(0..all, |range| {
+                    tether::solve(level, sheet, &tethers, slack, range);
+                });
+            }
+        }
         self.bend(topology, particles);
         if let Some(lattice) = &topology.lattice {
             self.solve_lattice(lattice, particles);
@@ -135,12 +143,16 @@ impl Pass<'_> {
             alpha_tilde: self.alpha_tilde(self.material.shear_compliance),
             rising_first: odd,
         };
-        // Parts begin at even distances from the first.
-        for first in [0, 1] {
-            self.crew.share(first..rows, |rows| {
-                lattice::solve_shear(level, sheet, shear, rows);
-            });
-        }
+        self.crew.share(0..rows, |rows| {
+            shear::solve(level, sheet, shear, rows);
+        });
+        let part = self.crew.part(rows);
+        let seams = rows.div_ceil(part) - 1;
+        self.crew.share_by(1, 0..seams, |seams| {
+            for seam in seams {
+                shear::solve_seam(level, sheet, shear, (seam + 1) * part - 1);
+            }
+        });
 
         let weft = self.line(self.material.weft_compliance, dx, dy);
         let warp = self.line(self.material.warp_compliance, dy, dx);
@@ -180,44 +192,57 @@ fn sheet(particles: &mut ClothParticles, [columns, rows]: [usize; 2]) -> Sheet<'
     }
 }
 
-/// Internal viscosity, before the particles move. The substep before took `seconds_before` \[s\].
-pub(crate) fn damp(
-    level: Level,
+/// Internal viscosity, and inertia in the same sweep where there is one. Returns whether the particles moved.
+pub(crate) fn integrate(
+    substep: &Substep,
     topology: &Topology,
     material: &ClothMaterial,
-    seconds_before: f32,
+    verlet: Verlet,
     particles: &mut ClothParticles,
-) {
-    let sound = material.viscosity > 0.0 && seconds_before > 0.0;
-    if !sound || particles.len() != topology.particles() {
-        return;
+) -> bool {
+    let seconds_before = particles.substep_seconds;
+    let damped = material.viscosity > 0.0
+        && seconds_before > 0.0
+        && !particles.is_empty()
+        && particles.len() == topology.particles();
+    if !damped {
+        return false;
     }
     let density = particles.areal_density;
     let ClothParticles {
         position,
         previous_position,
         lost_displacement,
+        acceleration,
         mass,
         inv_mass,
+        lambda: scratch,
         ..
     } = particles;
-    let motion = RigidMotion::fit(mass, position, previous_position);
+    let rigid = RigidMotion::fit(mass, position, previous_position);
     if let Some(lattice) = &topology.lattice {
         let area = lattice.spacing.x * lattice.spacing.y;
         // ν = c L²/(4 h) on a square grid.
         let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
-        let conductance = 0.25 * c * density * area;
-        let sheet = Sheet {
-            columns: lattice.columns as usize,
-            rows: lattice.rows as usize,
-            position: SharedPoints::new(position),
-            inv_mass: Shared::new(inv_mass),
-            normal: None,
+        let motion = Motion {
+            sheet: Sheet {
+                columns: lattice.columns as usize,
+                rows: lattice.rows as usize,
+                position: SharedPoints::new(position),
+                inv_mass: Shared::new(inv_mass),
+                normal: None,
+            },
+            previous: SharedPoints::new(previous_position),
+            lost: SharedPoints::new(lost_displacement),
+            acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
+            conductance: 0.25 * c * density * area,
+            rigid,
+            verlet,
         };
-        let previous = SharedPoints::new(previous_position);
-        let lost = SharedPoints::new(lost_displacement);
-        viscosity::damp(level, sheet, previous, lost, motion, conductance);
-    } else if let Some(fabric) = &topology.fabric {
+        sweep(substep, motion, scratch);
+        return true;
+    }
+    if let Some(fabric) = &topology.fabric {
         let viscosity = material.viscosity * seconds_before;
         mesh::exchange(
             fabric,
@@ -225,9 +250,38 @@ pub(crate) fn damp(
             previous_position,
             lost_displacement,
             inv_mass,
-            motion,
+            rigid,
             viscosity,
             density,
         );
     }
+    false
+}
+
+/// Moves a sheet, in blocks of rows, one for each part of the crew.
+fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
+    let (level, crew) = (substep.level, substep.crew);
+    let rows = motion.sheet.rows;
+    let part = crew.part(rows);
+    if part == rows {
+        motion.sweep(level, 0..rows, Beside::default());
+        return;
+    }
+    // Of each seam between blocks the row above and the row below.
+    let len = motion.saved_len();
+    scratch.resize(2 * len * (rows.div_ceil(part) - 1), 0.0);
+    for (k, seam) in scratch.chunks_exact_mut(2 * len).enumerate() {
+        let (above, below) = seam.split_at_mut(len);
+        motion.save_row(level, (k + 1) * part - 1, above);
+        motion.save_row(level, (k + 1) * part, below);
+    }
+    let seam = |k: usize| scratch.get(2 * len * k..2 * len * (k + 1));
+    crew.share(0..rows, |rows| {
+        let block = rows.start / part;
+        let beside = Beside {
+            above: block.checked_sub(1).and_then(seam).map(|s| &s[..len]),
+            below: seam(block).map(|s| &s[len..]),
+        };
+        motion.sweep(level, rows, beside);
+    });
 }

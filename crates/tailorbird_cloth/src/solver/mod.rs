@@ -79,10 +79,6 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
     let (topology, material) = (cloth.topology, cloth.material);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
-    if *cloth.solver == ClothSolver::Chains {
-        let before = particles.substep_seconds;
-        chains::damp(substep.level, topology, material, before, particles);
-    }
     let verlet = Verlet {
         seconds,
         seconds_before: particles.substep_seconds,
@@ -93,6 +89,8 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
         },
         gravity: cloth.frame.vector_to_frame(substep.gravity),
     };
+    let moved = *cloth.solver == ClothSolver::Chains
+        && chains::integrate(substep, topology, material, verlet, particles);
     let ClothParticles {
         position,
         previous_position,
@@ -102,14 +100,16 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
         pins,
         ..
     } = particles;
-    verlet.step(
-        substep.level,
-        position,
-        previous_position,
-        lost_displacement,
-        (!acceleration.is_empty()).then_some(&*acceleration),
-        inv_mass,
-    );
+    if !moved {
+        verlet.step(
+            substep.level,
+            position,
+            previous_position,
+            lost_displacement,
+            (!acceleration.is_empty()).then_some(&*acceleration),
+            inv_mass,
+        );
+    }
     for pin in pins.iter() {
         let i = pin.particle as usize;
         let from = position.get(i);

@@ -58,10 +58,8 @@ fn droop(rows: u32, substeps: u32, weight: f32) -> Option<f64> {
     let spacing = LENGTH / (rows - 1) as f32;
     // The clamp is half way between the two pinned rows.
     let free = spacing * (rows as f32 - 1.5);
-    // A column at the border is as stiff as one within: as a whole the strip is as stiff as one that is a column wider.
-    let wider = COLUMNS as f32 / (COLUMNS - 1) as f32;
     let density = rigid().areal_density;
-    let rigidity = density * G * free.powi(3) / weight / wider;
+    let rigidity = density * G * free.powi(3) / weight;
     // α̃ = L²/(B h²) is at least W/2 = 3/(σ L²), L being the spacing: B h² is at most σ L⁴/3.
     let h = 1.0 / (60 * substeps) as f32;
     if rigidity * h * h > density * spacing.powi(4) / 6.0 {

@@ -13,15 +13,18 @@ use std::{
     cell::RefCell,
     marker::PhantomData,
     ops::{Add, Mul, Range, Sub},
-    slice,
+    ptr::NonNull,
 };
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Simd, f32x4, prelude::*};
 
 use crate::points::Points;
 
 /// The widest vector of all instruction sets.
 pub const WIDEST: usize = 16;
+
+/// The lanes of a vector as an array of numbers.
+type Lanes<S> = <<S as Simd>::f32s as SimdBase<S>>::Array;
 
 /// An array that several tasks read and write, each its own elements.
 ///
@@ -30,7 +33,7 @@ pub const WIDEST: usize = 16;
 /// springs themselves.
 #[derive(Clone, Copy)]
 pub(crate) struct Shared<'a> {
-    start: *mut f32,
+    start: NonNull<f32>,
     len: usize,
     array: PhantomData<&'a mut [f32]>,
 }
@@ -45,8 +48,8 @@ impl<'a> Shared<'a> {
     #[inline(always)]
     pub fn new(array: &'a mut [f32]) -> Self {
         Self {
-            start: array.as_mut_ptr(),
             len: array.len(),
+            start: NonNull::from(array).cast(),
             array: PhantomData,
         }
     }
@@ -60,16 +63,32 @@ impl<'a> Shared<'a> {
     pub fn load<S: Simd>(self, simd: S, i: usize) -> S::f32s {
         debug_assert!(i + S::f32s::LEN <= self.len, "lanes out of range");
         // SAFETY: in range, and no other task writes these elements now.
-        let values = unsafe { slice::from_raw_parts(self.start.add(i), S::f32s::LEN) };
-        S::f32s::from_slice(simd, values)
+        let values = unsafe { self.start.add(i).cast::<Lanes<S>>().as_ref() };
+        S::f32s::load_array_ref(simd, values)
     }
 
     #[inline(always)]
     pub fn store<S: Simd>(self, i: usize, value: S::f32s) {
         debug_assert!(i + S::f32s::LEN <= self.len, "lanes out of range");
         // SAFETY: in range, and no other task uses these elements now.
-        let values = unsafe { slice::from_raw_parts_mut(self.start.add(i), S::f32s::LEN) };
-        value.store_slice(values);
+        let values = unsafe { self.start.add(i).cast::<Lanes<S>>().as_mut() };
+        value.store_array(values);
+    }
+
+    #[inline(always)]
+    pub fn load_four<S: Simd>(self, simd: S, i: usize) -> f32x4<S> {
+        debug_assert!(i + 4 <= self.len, "lanes out of range");
+        // SAFETY: in range, and no other task writes these elements now.
+        let values = unsafe { self.start.add(i).cast::<[f32; 4]>().as_ref() };
+        f32x4::load_array_ref(simd, values)
+    }
+
+    #[inline(always)]
+    pub fn store_four<S: Simd>(self, i: usize, value: f32x4<S>) {
+        debug_assert!(i + 4 <= self.len, "lanes out of range");
+        // SAFETY: in range, and no other task uses these elements now.
+        let values = unsafe { self.start.add(i).cast::<[f32; 4]>().as_mut() };
+        value.store_array(values);
     }
 
     #[inline(always)]
@@ -136,13 +155,13 @@ impl Reading<'_> {
 
 /// The elements that a vector stands for: as many as it has lanes, without gaps, in ranges of any length.
 ///
-/// The last window of a range lies at its end and so overlaps the one before; what that one did already is left alone.
+/// The last window of a range lies at its end and so overlaps the one before; what that one does is left alone.
 /// Only a range that is shorter than a vector has a short window, which is loaded one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     /// The first element.
     pub at: usize,
-    /// How many of the first lanes are done.
+    /// How many of the first lanes belong to the window before.
     done: usize,
     /// How many lanes there are, if not all.
     short: usize,
@@ -178,35 +197,44 @@ impl Window {
         }
     }
 
-    /// The lanes that are still to be done.
+    /// The lanes that belong to this window.
     #[inline(always)]
     pub fn todo<S: Simd>(self, simd: S) -> S::mask32s {
-        S::f32s::from_slice(simd, &LANE_NUMBERS[..S::f32s::LEN])
-            .simd_ge(S::f32s::splat(simd, self.done as f32))
+        lane_numbers(simd).simd_ge(S::f32s::splat(simd, self.done as f32))
     }
 }
+
+/// In bytes.
+const CACHE_LINE: usize = 64;
 
 thread_local! {
     static SCRATCH: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Calls `f` with scratch of at least `len` numbers, which is kept for the next call on this thread.
+/// Calls `f` with scratch of `len` numbers, which is kept for the next call on this thread. It starts where a cache line does: a
+/// vector that lies in two lines takes twice as long.
 pub(crate) fn with_scratch<R>(len: usize, f: impl FnOnce(&mut [f32]) -> R) -> R {
     SCRATCH.with(|scratch| {
         let mut own = Vec::new();
         let mut kept = scratch.try_borrow_mut();
         let scratch = kept.as_deref_mut().unwrap_or(&mut own);
-        if scratch.len() < len {
-            scratch.resize(len, 0.0);
+        if scratch.len() < len + WIDEST {
+            scratch.resize(len + WIDEST, 0.0);
         }
-        f(&mut scratch[..len])
+        let start = scratch.as_ptr().align_offset(CACHE_LINE).min(WIDEST);
+        f(&mut scratch[start..start + len])
     })
 }
 
-/// Calls `f` for the windows of a range.
+/// Calls `f` for the windows of a range, for the last one first: what it stores and the one before it loads then has time to
+/// get to the cache.
 #[inline(always)]
 pub(crate) fn each_window<S: Simd>(simd: S, range: Range<usize>, mut f: impl FnMut(Window)) {
     let lanes = S::f32s::LEN;
+    let left = (range.end - range.start) % lanes;
+    if left != 0 {
+        f(Window::last(simd, &range, left));
+    }
     let mut at = range.start;
     while at + lanes <= range.end {
         f(Window {
@@ -216,9 +244,12 @@ pub(crate) fn each_window<S: Simd>(simd: S, range: Range<usize>, mut f: impl FnM
         });
         at += lanes;
     }
-    if at < range.end {
-        f(Window::last(simd, &range, range.end - at));
-    }
+}
+
+/// 0, 1, 2 and so on.
+#[inline(always)]
+pub(crate) fn lane_numbers<S: Simd>(simd: S) -> S::f32s {
+    S::f32s::from_slice(simd, &LANE_NUMBERS[..S::f32s::LEN])
 }
 
 const LANE_NUMBERS: [f32; WIDEST] = [

@@ -8,8 +8,8 @@ use std::ops::Range;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    lanes::{Factor, Shared, SharedPoints, V3, WIDEST, Window, each_window, with_scratch},
-    line::{self, LineStiffness, Lines},
+    lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
+    line::{self, Edge, LineStiffness, Lines},
 };
 
 /// Particles of a sheet, in row-major order.
@@ -63,26 +63,28 @@ fn solve_columns_with<S: Simd>(
     scratch: &mut [f32],
 ) {
     let (m, n) = (sheet.rows, S::f32s::LEN);
+    let contact = sheet.normal.is_some();
+    let (factors, rest) = scratch.split_at_mut(2 * m * n);
+    let factors = Shared::new(factors);
+    let block = Block::new(rest, m, n);
     let mut lines = Lines {
         position: sheet.position,
         inv_mass: sheet.inv_mass,
         normal: sheet.normal.unwrap_or(sheet.position),
+        bent: block.position,
         offset: columns.start,
         stride: sheet.columns,
         len: m,
     };
-    let contact = sheet.normal.is_some();
-    let (factors, rest) = scratch.split_at_mut(2 * m * n);
-    let factors = Shared::new(factors);
+    let of_lines = |first| stiffness.of_lines(simd, first, sheet.columns);
     while lines.offset + n <= columns.end {
-        solve_block(simd, lines, stiffness, contact, factors);
+        solve_block(simd, lines, of_lines(lines.offset), contact, factors);
         lines.offset += n;
     }
     let count = columns.end - lines.offset;
     if count == 0 {
         return;
     }
-    let block = Block::new(rest, m, n);
     let window = Window::short(count);
     for k in 0..m {
         let from = lines.offset + k * sheet.columns;
@@ -95,6 +97,7 @@ fn solve_columns_with<S: Simd>(
             block.normal.store(k * n, normal);
         }
     }
+    let stiffness = of_lines(lines.offset);
     solve_block(simd, block.lines(m, n), stiffness, contact, factors);
     for k in 0..m {
         let p: V3<S> = block.position.load(simd, k * n);
@@ -140,6 +143,7 @@ fn solve_rows_with<S: Simd>(
             tile.load(simd, normal.y, block.normal.y);
             tile.load(simd, normal.z, block.normal.z);
         }
+        let stiffness = stiffness.of_lines(simd, row, sheet.rows);
         solve_block(simd, block.lines(m, n), stiffness, contact, factors);
         tile.store(simd, block.position.x, sheet.position.x);
         tile.store(simd, block.position.y, sheet.position.y);
@@ -152,7 +156,7 @@ fn solve_rows_with<S: Simd>(
 fn solve_block<S: Simd>(
     simd: S,
     lines: Lines,
-    stiffness: LineStiffness,
+    (edge, bend): (Edge<S>, S::f32s),
     contact: bool,
     factors: Shared,
 ) {
@@ -160,9 +164,9 @@ fn solve_block<S: Simd>(
         #[inline(always)]
         || {
             if contact {
-                line::solve::<S, _, true, true>(simd, lines, stiffness, stiffness.bend, factors);
+                line::solve::<S, _, true, true>(simd, lines, edge, bend, factors);
             } else {
-                line::solve::<S, _, true, false>(simd, lines, stiffness, stiffness.bend, factors);
+                line::solve::<S, _, true, false>(simd, lines, edge, bend, factors);
             }
         },
     );
@@ -203,6 +207,7 @@ impl<'a> Block<'a> {
             position: self.position,
             inv_mass: self.inv_mass,
             normal: self.normal,
+            bent: self.position,
             offset: 0,
             stride: width,
             len,
@@ -226,14 +231,8 @@ impl Tile {
         let mut column = 0;
         if self.rows == n {
             while column + n <= self.columns {
-                let mut tile = [S::f32s::splat(simd, 0.0); WIDEST];
-                for (r, vector) in tile[..n].iter_mut().enumerate() {
-                    *vector = sheet.load(simd, self.sheet_offset + r * self.columns + column);
-                }
-                let tile = transpose::<S>(tile);
-                for (c, vector) in tile[..n].iter().enumerate() {
-                    block.store::<S>((column + c) * n, *vector);
-                }
+                let from = [self.sheet_offset + column, self.columns];
+                transpose(simd, sheet, from, block, [column * n, n]);
                 column += n;
             }
         }
@@ -256,14 +255,8 @@ impl Tile {
         let mut column = 0;
         if self.rows == n {
             while column + n <= self.columns {
-                let mut tile = [S::f32s::splat(simd, 0.0); WIDEST];
-                for (c, vector) in tile[..n].iter_mut().enumerate() {
-                    *vector = block.load(simd, (column + c) * n);
-                }
-                let tile = transpose::<S>(tile);
-                for (r, vector) in tile[..n].iter().enumerate() {
-                    sheet.store::<S>(self.sheet_offset + r * self.columns + column, *vector);
-                }
+                let to = [self.sheet_offset + column, self.columns];
+                transpose(simd, block, [column * n, n], sheet, to);
                 column += n;
             }
         }
@@ -276,16 +269,48 @@ impl Tile {
     }
 }
 
+/// Transposes a square of as many lines as a vector has lanes. The places are those of the first line, and how far it is to the
+/// next.
+#[inline(always)]
+fn transpose<S: Simd>(
+    simd: S,
+    from: Shared,
+    [at, stride]: [usize; 2],
+    to: Shared,
+    [to_at, to_stride]: [usize; 2],
+) {
+    let n = S::f32s::LEN;
+    if n == WIDEST {
+        let mut tile = [S::f32s::splat(simd, 0.0); WIDEST];
+        for (k, vector) in tile.iter_mut().enumerate() {
+            *vector = from.load(simd, at + k * stride);
+        }
+        for (k, vector) in interleaved(tile).into_iter().enumerate() {
+            to.store::<S>(to_at + k * to_stride, vector);
+        }
+        return;
+    }
+    // By fours: AVX2 has no cheap way to interleave more.
+    for k in (0..n).step_by(4) {
+        for l in (0..n).step_by(4) {
+            let line = |i| from.load_four(simd, at + (k + i) * stride + l);
+            let tile = interleaved([line(0), line(1), line(2), line(3)]);
+            for (i, vector) in tile.into_iter().enumerate() {
+                to.store_four(to_at + (l + i) * to_stride + k, vector);
+            }
+        }
+    }
+}
+
 /// Transposes a square of as many vectors as they have lanes: in each round, vector i and the one half a square further are
 /// interleaved.
 #[inline(always)]
-fn transpose<S: Simd>(mut tile: [S::f32s; WIDEST]) -> [S::f32s; WIDEST] {
-    let n = S::f32s::LEN;
-    let mut rounds = n;
+fn interleaved<S: Simd, V: SimdBase<S>, const N: usize>(mut tile: [V; N]) -> [V; N] {
+    let mut rounds = N;
     while rounds > 1 {
         let mut next = tile;
-        for i in 0..n / 2 {
-            let (low, high) = tile[i].interleave(tile[i + n / 2]);
+        for i in 0..N / 2 {
+            let (low, high) = tile[i].interleave(tile[i + N / 2]);
             next[2 * i] = low;
             next[2 * i + 1] = high;
         }
@@ -293,74 +318,4 @@ fn transpose<S: Simd>(mut tile: [S::f32s; WIDEST]) -> [S::f32s; WIDEST] {
         rounds /= 2;
     }
     tile
-}
-
-/// What the diagonals of the cells resist with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shear {
-    /// L \[m\].
-    pub rest_length: f32,
-    /// α̃ = α/h² [1/kg].
-    pub alpha_tilde: f32,
-    /// Whether the diagonals that rise to the right come first.
-    pub rising_first: bool,
-}
-
-/// Projects both diagonals of the cells between each row of a range and the next, every second row.
-///
-/// Without a square root: s = 2 (q − L²)/(3 q + L²) is 1 − L/|d| to second order around rest, and never more than that.
-pub(crate) fn solve_shear(level: Level, sheet: Sheet, shear: Shear, rows: Range<usize>) {
-    sheet.check();
-    dispatch!(level, simd => solve_shear_with(simd, sheet, shear, rows));
-}
-
-#[inline(always)]
-fn solve_shear_with<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>) {
-    for row in rows.step_by(2) {
-        if row + 1 >= sheet.rows {
-            break;
-        }
-        let (upper, lower) = (row * sheet.columns, (row + 1) * sheet.columns);
-        for rising in [shear.rising_first, !shear.rising_first] {
-            if rising {
-                diagonals(simd, sheet, shear, upper + 1, lower);
-            } else {
-                diagonals(simd, sheet, shear, upper, lower + 1);
-            }
-        }
-    }
-}
-
-/// The springs from `a + j` to `b + j` for each of the cells j of a row.
-#[inline(always)]
-fn diagonals<S: Simd>(simd: S, sheet: Sheet, shear: Shear, a: usize, b: usize) {
-    let l2 = S::f32s::splat(simd, shear.rest_length * shear.rest_length);
-    let alpha = S::f32s::splat(simd, shear.alpha_tilde);
-    let least = S::f32s::splat(simd, 1e-30);
-    let cells = 0..sheet.columns - 1;
-    each_window(
-        simd,
-        cells.clone(),
-        #[inline(always)]
-        |window| {
-            let p_a: V3<S> = sheet.position.load_at(simd, window, a);
-            let p_b: V3<S> = sheet.position.load_at(simd, window, b);
-            let w_a = sheet.inv_mass.load_at(simd, window, a);
-            let w_b = sheet.inv_mass.load_at(simd, window, b);
-            let d = p_b - p_a;
-            let q = d.dot(d);
-            let excess = q - l2;
-            // As for bending: see `line`.
-            let w = w_a + w_b;
-            let w = (w * 0.5 + alpha).max(w).max(least);
-            let s = (excess + excess) / ((q * 3.0 + l2) * w);
-            let push = Factor(s) * d;
-            sheet
-                .position
-                .store_at(simd, window, a, p_a + Factor(w_a) * push);
-            sheet
-                .position
-                .store_at(simd, window, b, p_b - Factor(w_b) * push);
-        },
-    );
 }

@@ -29,7 +29,7 @@
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
-use super::lanes::{Factor, Shared, SharedPoints, V3};
+use super::lanes::{Factor, Shared, SharedPoints, V3, WIDEST};
 
 /// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
 const NO_MASS: f32 = 1e-30;
@@ -49,6 +49,9 @@ pub(crate) struct Lines<'a> {
     pub inv_mass: Shared<'a>,
     /// Unit normals of contacts, 0 where there is none; read with `CONTACT` alone.
     pub normal: SharedPoints<'a>,
+    /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
+    /// lies like this as well.
+    pub bent: SharedPoints<'a>,
     /// First particle of the first lane.
     pub offset: usize,
     /// From one particle of a chain to the next.
@@ -57,7 +60,30 @@ pub(crate) struct Lines<'a> {
     pub len: usize,
 }
 
-/// What holds for all edges of a call.
+impl Lines<'_> {
+    /// Where particle `k` of the first chain lies.
+    #[inline(always)]
+    fn at(self, k: usize) -> usize {
+        self.offset + k * self.stride
+    }
+
+    #[inline(always)]
+    fn particle<S: Simd>(self, simd: S, k: usize) -> V3<S> {
+        self.position.load(simd, self.at(k))
+    }
+
+    #[inline(always)]
+    fn weight<S: Simd>(self, simd: S, k: usize) -> S::f32s {
+        self.inv_mass.load(simd, self.at(k))
+    }
+
+    #[inline(always)]
+    fn normal<S: Simd>(self, simd: S, k: usize) -> V3<S> {
+        self.normal.load(simd, self.at(k))
+    }
+}
+
+/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStiffness {
     /// L \[m\].
@@ -66,6 +92,28 @@ pub struct LineStiffness {
     pub stretch: f32,
     /// α̃ of the triples [1/kg]; infinite is without bending.
     pub bend: f32,
+}
+
+impl LineStiffness {
+    /// The edges and the α̃ of the triples of the lines from `first` on, one in each lane, of `count` in all.
+    #[inline(always)]
+    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, S::f32s) {
+        let mut scale = [1.0; WIDEST];
+        if first == 0 {
+            scale[0] = 2.0;
+        }
+        // A sheet has two lines at least.
+        if let Some(last) = scale[..S::f32s::LEN].get_mut(count - 1 - first) {
+            *last = 2.0;
+        }
+        let scale = S::f32s::from_slice(simd, &scale[..S::f32s::LEN]);
+        let l2 = self.rest_length * self.rest_length;
+        let edge = Edge {
+            l2: S::f32s::splat(simd, l2),
+            alpha: scale * (self.stretch * l2),
+        };
+        (edge, scale * self.bend)
+    }
 }
 
 /// What an edge resists with, for each lane.
@@ -78,19 +126,16 @@ pub(crate) struct Edge<S: Simd> {
 }
 
 /// What the edges of chains resist with.
-pub(crate) trait Edges: Copy {
+pub(crate) trait Edges<S: Simd>: Copy {
     /// Those from the particles `k` to the next.
-    fn at<S: Simd>(self, simd: S, k: usize) -> Edge<S>;
+    fn at(self, simd: S, k: usize) -> Edge<S>;
 }
 
-impl Edges for LineStiffness {
+/// Edges that are all the same along a chain.
+impl<S: Simd> Edges<S> for Edge<S> {
     #[inline(always)]
-    fn at<S: Simd>(self, simd: S, _k: usize) -> Edge<S> {
-        let l2 = self.rest_length * self.rest_length;
-        Edge {
-            l2: S::f32s::splat(simd, l2),
-            alpha: S::f32s::splat(simd, self.stretch * l2),
-        }
+    fn at(self, _simd: S, _k: usize) -> Self {
+        self
     }
 }
 
@@ -107,9 +152,9 @@ pub(crate) struct MeshLines<'a> {
     pub stride: usize,
 }
 
-impl Edges for MeshLines<'_> {
+impl<S: Simd> Edges<S> for MeshLines<'_> {
     #[inline(always)]
-    fn at<S: Simd>(self, simd: S, k: usize) -> Edge<S> {
+    fn at(self, simd: S, k: usize) -> Edge<S> {
         let load =
             |values: &[f32]| S::f32s::from_slice(simd, &values[k * self.stride..][..S::f32s::LEN]);
         let length = load(self.rest_length);
@@ -122,7 +167,13 @@ impl Edges for MeshLines<'_> {
 }
 
 /// A sweep forward: the particles e, e+1 and e+2 around the edge e, and what the elimination carries on.
-struct Sweep<S: Simd> {
+struct Sweep<'a, S: Simd, E> {
+    simd: S,
+    lines: Lines<'a>,
+    edges: E,
+    /// α̃ of the triples [1/kg].
+    bend: S::f32s,
+    factors: Shared<'a>,
     a: V3<S>,
     b: V3<S>,
     c: V3<S>,
@@ -130,115 +181,151 @@ struct Sweep<S: Simd> {
     w_b: S::f32s,
     w_c: S::f32s,
     n_a: V3<S>,
-    /// The edge before: d, off-diagonal's part of its far end, 1/pivot, solution.
+    weights: Weights<S>,
+    /// The edge before: d, 1/pivot, solution.
     d: V3<S>,
     inv_pivot: S::f32s,
     g: S::f32s,
 }
 
-/// Solves as many chains as a vector has lanes. `factors` is scratch of at least 2 · len · lanes.
+/// Solves as many chains as a vector has lanes. `factors` is scratch of at least 2 · len · lanes; `bend` is α̃ of the triples
+/// [1/kg].
 ///
 /// One vector at a time: with two, whose divisions could fill the gaps of one another, the state no longer fits the registers,
 /// and a quarter of the speed is lost (AVX-512).
 #[inline(always)]
-pub(crate) fn solve<S: Simd, E: Edges, const BEND: bool, const CONTACT: bool>(
+pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: bool>(
     simd: S,
     lines: Lines,
     edges: E,
-    bend: f32,
+    bend: S::f32s,
     factors: Shared,
 ) {
-    let m = lines.len;
-    if m < 2 {
+    if lines.len < 2 {
         return;
     }
-    let lanes = S::f32s::LEN;
-    let at = |k: usize| lines.offset + k * lines.stride;
-    let slot = |k: usize| 2 * k * lanes;
-    let nothing = V3::splat(simd, Vec3::ZERO);
-    let least_w = S::f32s::splat(simd, NO_MASS);
-    let bend = S::f32s::splat(simd, bend);
-    let zero = S::f32s::splat(simd, 0.0);
-    let mut s: Sweep<S> = Sweep {
-        a: lines.position.load(simd, at(0)),
-        b: lines.position.load(simd, at(1)),
-        c: nothing,
-        w_a: lines.inv_mass.load(simd, at(0)),
-        w_b: lines.inv_mass.load(simd, at(1)),
-        w_c: zero,
-        n_a: nothing,
-        d: nothing,
-        inv_pivot: zero,
-        g: zero,
-    };
-    if CONTACT {
-        s.n_a = lines.normal.load(simd, at(0));
+    let mut sweep = Sweep::start::<BEND, CONTACT>(simd, lines, edges, bend, factors);
+    // The edges that have a triple beyond them, and the last ones.
+    let inner = if BEND { lines.len.saturating_sub(3) } else { 0 };
+    for e in 0..inner {
+        sweep.advance::<BEND, CONTACT, true>(e);
     }
-    if BEND && m > 2 {
-        s.c = lines.position.load(simd, at(2));
-        s.w_c = lines.inv_mass.load(simd, at(2));
-        (s.a, s.b, s.c) = bend_triple(simd, [s.a, s.b, s.c], [s.w_a, s.w_b, s.w_c], bend);
-        lines.position.store(at(0), s.a);
+    for e in inner..lines.len - 1 {
+        sweep.advance::<BEND, CONTACT, false>(e);
+    }
+    substitute::<S, CONTACT>(simd, lines, factors);
+}
+
+impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
+    #[inline(always)]
+    fn start<const BEND: bool, const CONTACT: bool>(
+        simd: S,
+        lines: Lines<'a>,
+        edges: E,
+        bend: S::f32s,
+        factors: Shared<'a>,
+    ) -> Self {
+        let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
+        let mut s = Self {
+            simd,
+            lines,
+            edges,
+            bend,
+            factors,
+            a: lines.particle(simd, 0),
+            b: lines.particle(simd, 1),
+            c: nothing,
+            w_a: lines.weight(simd, 0),
+            w_b: lines.weight(simd, 1),
+            w_c: zero,
+            n_a: nothing,
+            weights: Weights {
+                parts: [zero; 3],
+                run: 0,
+            },
+            d: nothing,
+            inv_pivot: zero,
+            g: zero,
+        };
+        if CONTACT {
+            s.n_a = lines.normal(simd, 0);
+        }
+        if BEND && lines.len > 2 {
+            (s.c, s.w_c) = (lines.particle(simd, 2), lines.weight(simd, 2));
+            s.weights.of_triple(simd, [s.w_a, s.w_b, s.w_c], bend);
+            (s.a, s.b, s.c) = bend_triple([s.a, s.b, s.c], s.weights.parts);
+        }
+        if BEND {
+            lines.bent.store(0, s.a);
+        }
+        s
     }
 
-    for e in 0..m - 1 {
-        let (mut next, mut w_next) = (nothing, S::f32s::splat(simd, 0.0));
+    /// Bends the triple from e + 1 on, if there is one (`TRIPLE`), and eliminates the edge e.
+    #[inline(always)]
+    fn advance<const BEND: bool, const CONTACT: bool, const TRIPLE: bool>(&mut self, e: usize) {
+        let s = self;
+        let (simd, lines) = (s.simd, s.lines);
+        let (mut next, mut w_next) = (s.c, s.w_c);
+        if TRIPLE {
+            (next, w_next) = (lines.particle(simd, e + 3), lines.weight(simd, e + 3));
+            s.weights.of_triple(simd, [s.w_b, s.w_c, w_next], s.bend);
+            (s.b, s.c, next) = bend_triple([s.b, s.c, next], s.weights.parts);
+        }
         if BEND {
-            if e + 3 < m {
-                next = lines.position.load(simd, at(e + 3));
-                w_next = lines.inv_mass.load(simd, at(e + 3));
-                (s.b, s.c, next) =
-                    bend_triple(simd, [s.b, s.c, next], [s.w_b, s.w_c, w_next], bend);
-            }
-            lines.position.store(at(e + 1), s.b);
-        } else if e + 2 < m {
-            s.c = lines.position.load(simd, at(e + 2));
-            s.w_c = lines.inv_mass.load(simd, at(e + 2));
+            lines.bent.store((e + 1) * S::f32s::LEN, s.b);
+        } else if e + 2 < lines.len {
+            (s.c, s.w_c) = (lines.particle(simd, e + 2), lines.weight(simd, e + 2));
         }
 
-        let Edge { l2, alpha } = edges.at(simd, e);
+        let Edge { l2, alpha } = s.edges.at(simd, e);
+        let least_w = S::f32s::splat(simd, NO_MASS);
         let quarter = l2 * 0.25;
         let d = s.b - s.a;
         let q = d.dot(d);
         let w = s.w_a + s.w_b;
-        let mut diagonal = w * q.max(quarter) + alpha;
+        let mut diagonal = w * (q.max(quarter) + l2 * RELATIVE_COMPLIANCE) + (alpha + least_w);
         let mut dd = s.d.dot(d);
-        let mut n_b = nothing;
         if CONTACT {
-            n_b = lines.normal.load(simd, at(e + 1));
+            let n_b = lines.normal(simd, e + 1);
             let (along_a, along_b) = (s.n_a.dot(d), n_b.dot(d));
             diagonal = diagonal - s.w_a * along_a * along_a - s.w_b * along_b * along_b;
+            diagonal = diagonal.max(w * (l2 * LEAST_PIVOT) + least_w);
             dd -= s.n_a.dot(s.d) * along_a;
+            s.n_a = n_b;
         }
-        diagonal =
-            diagonal.max((w * (l2 * LEAST_PIVOT)).max(least_w)) + w * (l2 * RELATIVE_COMPLIANCE);
         let beside = s.w_a * dd;
         let rhs = ((l2 - q) * 0.5).min(quarter);
-        // −beside is the off-diagonal of the edges e − 1 and e.
-        let factor = beside * s.inv_pivot;
-        let inv_pivot = S::f32s::splat(simd, 1.0) / (diagonal - beside * factor);
+        // −beside is the off-diagonal of the edges e − 1 and e. What waits for the division before is as short as can be.
+        let pivot = diagonal - beside * beside * s.inv_pivot;
+        let inv_pivot = S::f32s::splat(simd, 1.0) / pivot;
         let g = (rhs + beside * s.g) * inv_pivot;
-        factors.store::<S>(slot(e), factor);
-        factors.store::<S>(slot(e) + lanes, g);
+        let slot = 2 * e * S::f32s::LEN;
+        s.factors.store::<S>(slot, beside * s.inv_pivot);
+        s.factors.store::<S>(slot + S::f32s::LEN, g);
 
         (s.d, s.inv_pivot, s.g) = (d, inv_pivot, g);
         (s.a, s.b, s.c) = (s.b, s.c, next);
         (s.w_a, s.w_b, s.w_c) = (s.w_b, s.w_c, w_next);
-        s.n_a = n_b;
     }
+}
 
-    // μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
-    let mut far: V3<S> = lines.position.load(simd, at(m - 1));
+/// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
+#[inline(always)]
+fn substitute<S: Simd, const CONTACT: bool>(simd: S, lines: Lines, factors: Shared) {
+    let (m, lanes) = (lines.len, S::f32s::LEN);
+    let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
+    let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
     for e in (0..m - 1).rev() {
-        let near = lines.position.load(simd, at(e));
-        let mu = factors.load(simd, slot(e) + lanes) + factor * mu_far;
-        factor = factors.load(simd, slot(e));
+        let near = lines.bent.load(simd, e * lanes);
+        let mu = factors.load(simd, (2 * e + 1) * lanes) + factor * mu_far;
+        factor = factors.load(simd, 2 * e * lanes);
         let push = Factor(mu) * (far - near);
-        apply::<S, CONTACT>(simd, lines, at(e + 1), far, push - pull);
+        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), far, push - pull);
         (far, pull, mu_far) = (near, push, mu);
     }
-    apply::<S, CONTACT>(simd, lines, at(0), far, nothing - pull);
+    apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
 }
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.
@@ -258,22 +345,43 @@ fn apply<S: Simd, const CONTACT: bool>(
     lines.position.store(i, position + Factor(w) * push);
 }
 
+/// By what the ends and the middle of a triple move for each D.
+struct Weights<S: Simd> {
+    parts: [S::f32s; 3],
+    /// How many inverse masses were like the one before, in all lanes, in a row.
+    run: usize,
+}
+
+impl<S: Simd> Weights<S> {
+    /// Those of the triple that comes after the last one. They depend on the masses alone, so that they are those of the last one
+    /// where all four masses are equal.
+    #[inline(always)]
+    fn of_triple(&mut self, simd: S, [w_a, w_b, w_c]: [S::f32s; 3], alpha_tilde: S::f32s) {
+        self.run = if w_b.simd_eq(w_c).all_true() {
+            self.run + 1
+        } else {
+            0
+        };
+        if self.run >= 3 {
+            return;
+        }
+        let w = (w_a + w_c) + w_b * 4.0;
+        let least = S::f32s::splat(simd, NO_MASS);
+        let part = S::f32s::splat(simd, 1.0) / (w * 0.5 + alpha_tilde).max(w).max(least);
+        self.parts = [w_a * part, (w_b + w_b) * part, w_c * part];
+    }
+}
+
 /// Pulls D = a − 2 b + c towards 0.
 #[inline(always)]
 fn bend_triple<S: Simd>(
-    simd: S,
     [a, b, c]: [V3<S>; 3],
-    [w_a, w_b, w_c]: [S::f32s; 3],
-    alpha_tilde: S::f32s,
+    [k_a, k_b, k_c]: [S::f32s; 3],
 ) -> (V3<S>, V3<S>, V3<S>) {
     let bow = (a - b) + (c - b);
-    let w = (w_a + w_c) + w_b * 4.0;
-    let least = S::f32s::splat(simd, NO_MASS);
-    let lambda =
-        Factor(S::f32s::splat(simd, 1.0) / (w * 0.5 + alpha_tilde).max(w).max(least)) * bow;
     (
-        a - Factor(w_a) * lambda,
-        b + Factor(w_b + w_b) * lambda,
-        c - Factor(w_c) * lambda,
+        a - Factor(k_a) * bow,
+        b + Factor(k_b) * bow,
+        c - Factor(k_c) * bow,
     )
 }

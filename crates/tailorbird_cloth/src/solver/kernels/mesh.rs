@@ -14,7 +14,7 @@ use super::{
     lattice::Block,
     line::{self, MeshLines},
     packed::{Packed, inv_mass, of_space, squared},
-    viscosity::RigidMotion,
+    rigid_motion::RigidMotion,
 };
 use crate::{
     points::Points,
@@ -164,11 +164,11 @@ fn solve_batch<S: Simd>(
             stretch,
             stride: LANES,
         };
-        let lines = block.lines(m, n);
+        let (lines, zero) = (block.lines(m, n), S::f32s::splat(simd, 0.0));
         if mesh.normal.is_some() {
-            line::solve::<S, _, false, true>(simd, lines, edges, 0.0, factors);
+            line::solve::<S, _, false, true>(simd, lines, edges, zero, factors);
         } else {
-            line::solve::<S, _, false, false>(simd, lines, edges, 0.0, factors);
+            line::solve::<S, _, false, false>(simd, lines, edges, zero, factors);
         }
         for k in 0..m {
             let moved: V3<S> = block.position.load(simd, k * n);

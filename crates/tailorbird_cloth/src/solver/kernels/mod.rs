@@ -12,11 +12,14 @@ pub(crate) mod line;
 pub(crate) mod mesh;
 pub mod normals;
 pub mod packed;
+#[cfg(test)]
+mod parity;
 pub mod range;
 pub mod rigid;
+pub mod rigid_motion;
+pub(crate) mod shear;
 pub mod sphere;
 pub(crate) mod tether;
-#[cfg(test)]
-mod times;
+pub mod times;
 pub mod verlet;
 pub(crate) mod viscosity;

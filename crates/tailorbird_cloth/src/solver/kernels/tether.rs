@@ -5,68 +5,142 @@
 
 use std::ops::Range;
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{Factor, Reading, Shared, SharedPoints, V3, each_window};
+use super::lanes::{Factor, Reading, V3, Window, each_window, lane_numbers};
 use super::lattice::Sheet;
 
 /// A pin, and how far each particle gets from it.
 #[derive(Clone, Copy)]
-pub(crate) struct Tether<'a> {
+pub(crate) struct Tether<W> {
     /// Where the pin is \[m\].
     pub anchor: Vec3,
-    /// The way along the sheet at rest, for each particle \[m\].
-    pub lengths: Reading<'a>,
+    /// How far each particle gets from it.
+    pub ways: W,
 }
 
-/// Pulls the free particles of a range back to where their tethers, `slack` times as long as at rest, are taut.
+/// The ways along a sheet that is flat at rest: straight lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Straight {
+    /// That of the pin.
+    pub column: u32,
+    /// That of the pin.
+    pub row: u32,
+    /// Between columns and between rows \[m\].
+    pub spacing: Vec2,
+}
+
+impl Straight {
+    /// How far it is to a particle \[m\].
+    pub fn length(self, column: u32, row: u32) -> f32 {
+        let cells = [column.abs_diff(self.column), row.abs_diff(self.row)];
+        (Vec2::from(cells.map(|n| n as f32)) * self.spacing).length()
+    }
+}
+
+/// Pulls the free particles of a range back to where their tethers, `slack` times as long as at rest, are taut. The ways are
+/// lengths, one for each particle \[m\].
 pub(crate) fn solve(
     level: Level,
     sheet: Sheet,
-    tethers: &[Option<Tether>],
+    tethers: &[Option<Tether<Reading>>],
     slack: f32,
     particles: Range<usize>,
 ) {
     sheet.check();
-    dispatch!(level, simd => solve_with(simd, sheet.position, sheet.inv_mass, tethers, slack, particles));
+    dispatch!(level, simd => {
+        each_window(
+            simd,
+            particles.clone(),
+            #[inline(always)]
+            |window| {
+                pull(
+                    simd,
+                    sheet,
+                    tethers,
+                    window,
+                    0,
+                    #[inline(always)]
+                    |lengths| {
+                        let length = lengths.load_at(simd, window) * slack;
+                        length * length
+                    },
+                );
+            },
+        );
+    });
 }
 
-#[inline(always)]
-fn solve_with<S: Simd>(
-    simd: S,
-    position: SharedPoints,
-    inv_mass: Shared,
-    tethers: &[Option<Tether>],
+/// Pulls the free particles of a range of rows back to where their tethers, `slack` times as long as at rest, are taut.
+pub(crate) fn solve_straight(
+    level: Level,
+    sheet: Sheet,
+    tethers: &[Option<Tether<Straight>>],
     slack: f32,
-    particles: Range<usize>,
+    rows: Range<usize>,
+) {
+    sheet.check();
+    dispatch!(level, simd => {
+        for row in rows {
+            each_window(
+                simd,
+                0..sheet.columns,
+                #[inline(always)]
+                |window| {
+                    pull(
+                        simd,
+                        sheet,
+                        tethers,
+                        window,
+                        row * sheet.columns,
+                        #[inline(always)]
+                        |ways| {
+                            let [dx, dy] = (ways.spacing * slack).to_array();
+                            let along = dy * (row as f32 - ways.row as f32);
+                            let first = window.at as f32 - ways.column as f32;
+                            let across = (lane_numbers(simd) + first) * dx;
+                            across * across + along * along
+                        },
+                    );
+                },
+            );
+        }
+    });
+}
+
+/// Pulls the particles of a window, from `first` on. `l2` tells the square of how far they get.
+#[inline(always)]
+fn pull<S: Simd, W: Copy>(
+    simd: S,
+    sheet: Sheet,
+    tethers: &[Option<Tether<W>>],
+    window: Window,
+    first: usize,
+    l2: impl Fn(W) -> S::f32s,
 ) {
     let zero = S::f32s::splat(simd, 0.0);
-    each_window(
-        simd,
-        particles.clone(),
-        #[inline(always)]
-        |window| {
-            let start: V3<S> = position.load_at(simd, window, 0);
-            let mut p = start;
-            let mut taut = false;
-            for tether in tethers.iter().flatten() {
-                let length = tether.lengths.load_at(simd, window) * slack;
-                // Lanes of a short window are 0, and so is their length: nothing comes of them.
-                let d = p - V3::splat(simd, tether.anchor);
-                let (q, l2) = (d.dot(d), length * length);
-                let beyond = q.simd_gt(l2);
-                if beyond.any_true() {
-                    taut = true;
-                    let excess = q - l2;
-                    let s = (excess + excess) / (q * 3.0 + l2);
-                    p = p - Factor(beyond.select(s, zero)) * d;
-                }
-            }
-            if taut {
-                let free = inv_mass.load_at(simd, window, 0).simd_gt(zero);
-                position.store_at(simd, window, 0, p.select(free, start));
-            }
-        },
-    );
+    let start: V3<S> = sheet.position.load_at(simd, window, first);
+    let mut p = start;
+    let mut taut = false;
+    for tether in tethers.iter().flatten() {
+        // Nothing comes of the lanes beyond a short window, which are not stored.
+        let l2 = l2(tether.ways);
+        let d = p - V3::splat(simd, tether.anchor);
+        let q = d.dot(d);
+        let beyond = q.simd_gt(l2);
+        if beyond.any_true() {
+            taut = true;
+            let excess = q - l2;
+            let s = (excess + excess) / (q * 3.0 + l2);
+            p = p - Factor(beyond.select(s, zero)) * d;
+        }
+    }
+    if taut {
+        let w = sheet.inv_mass.load_at(simd, window, first);
+        let free = w.simd_gt(zero);
+        sheet
+            .position
+            .store_at(simd, window, first, p.select(free, start));
+    }
 }

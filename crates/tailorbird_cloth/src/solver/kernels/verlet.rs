@@ -11,6 +11,7 @@ use super::lanes::{Reading, Shared, each_window};
 use crate::points::Points;
 
 /// One substep for all particles.
+#[derive(Clone, Copy, Debug)]
 pub struct Verlet {
     /// Length of the substep, h \[s\].
     pub seconds: f32,

@@ -1,0 +1,148 @@
+//! What holds constraints.
+
+use bevy_math::{Vec2, Vec3};
+
+use super::{
+    super::{
+        lanes::{Reading, Shared, SharedPoints},
+        lattice,
+        line::LineStiffness,
+        mesh::{self, Mesh},
+        shear::{self, Shear},
+        tether::{self, Straight, Tether},
+    },
+    SIZES, State, blocks, same,
+};
+use crate::{
+    cloth::Cloth,
+    topology::{Topology, test_meshes::delaunay},
+};
+
+#[test]
+fn lines() {
+    for size in SIZES {
+        for contact in [false, true] {
+            for bend in [0.3, f32::INFINITY] {
+                let line = LineStiffness {
+                    rest_length: 1.0,
+                    stretch: 0.01,
+                    bend,
+                };
+                let start = State::sheet(size);
+                same(&start, |level, state, cuts| {
+                    let columns = blocks(state.columns, cuts);
+                    state.with_sheet(contact, |sheet| {
+                        for block in columns {
+                            lattice::solve_columns(level, sheet, line, block);
+                        }
+                    });
+                });
+                same(&start, |level, state, cuts| {
+                    let rows = blocks(state.rows, cuts);
+                    state.with_sheet(contact, |sheet| {
+                        for block in rows {
+                            lattice::solve_rows(level, sheet, line, block);
+                        }
+                    });
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn diagonals() {
+    for size in SIZES {
+        for rising_first in [false, true] {
+            let shear = Shear {
+                rest_length: 1.4,
+                alpha_tilde: 0.5,
+                rising_first,
+            };
+            same(&State::sheet(size), |level, state, cuts| {
+                let rows = blocks(state.rows, cuts);
+                state.with_sheet(false, |sheet| {
+                    // The last block first: they do not depend on each other.
+                    for block in rows.iter().rev() {
+                        shear::solve(level, sheet, shear, block.clone());
+                    }
+                    for block in &rows[1..] {
+                        shear::solve_seam(level, sheet, shear, block.start - 1);
+                    }
+                });
+            });
+        }
+    }
+}
+
+#[test]
+fn tethers() {
+    for size in SIZES {
+        let start = State::sheet(size);
+        let n = start.inv_mass.len();
+        let ways = |pin: usize| Straight {
+            column: (pin % start.columns) as u32,
+            row: (pin / start.columns) as u32,
+            spacing: Vec2::new(0.99, 0.97),
+        };
+        let pins = [0, n / 2, n - 1];
+        same(&start, |level, state, cuts| {
+            let rows = blocks(state.rows, cuts);
+            let tethers = pins.map(|pin| {
+                let anchor = state.position.get(pin);
+                Some(Tether {
+                    anchor,
+                    ways: ways(pin),
+                })
+            });
+            state.with_sheet(false, |sheet| {
+                for block in rows {
+                    tether::solve_straight(level, sheet, &tethers, 1.001, block);
+                }
+            });
+        });
+        let lengths = pins.map(|pin| {
+            let length =
+                |i: usize| ways(pin).length((i % start.columns) as u32, (i / start.columns) as u32);
+            (0..n).map(length).collect::<Vec<f32>>()
+        });
+        same(&start, |level, state, cuts| {
+            let tethers = [0, 1, 2].map(|k| {
+                let anchor = state.position.get(pins[k]);
+                Some(Tether {
+                    anchor,
+                    ways: Reading(&lengths[k]),
+                })
+            });
+            let particles = blocks(n, cuts);
+            state.with_sheet(false, |sheet| {
+                for block in particles {
+                    tether::solve(level, sheet, &tethers, 1.001, block);
+                }
+            });
+        });
+    }
+}
+
+#[test]
+fn chains_of_a_mesh() {
+    let (positions, triangles) = delaunay(16, 5);
+    let shape = Cloth::mesh(positions, triangles.concat()).shape;
+    let topology = Topology::build(&shape, Vec3::ONE).expect("a mesh");
+    let fabric = topology.fabric.as_ref().expect("no grid");
+    let rest = topology.rest_positions.iter().map(|p| *p * 20.0);
+    let start = State::new([topology.particles(), 1], rest);
+    for contact in [false, true] {
+        same(&start, |level, state, _| {
+            let mesh = Mesh {
+                fabric,
+                position: SharedPoints::new(&mut state.position),
+                inv_mass: Shared::new(&mut state.inv_mass),
+                normal: contact.then(|| SharedPoints::new(&mut state.normal)),
+            };
+            for pass in &fabric.chains().passes {
+                mesh::solve_chains(level, mesh, 0.01, pass.batches.clone());
+            }
+        });
+    }
+}

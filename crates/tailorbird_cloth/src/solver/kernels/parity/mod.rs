@@ -1,0 +1,137 @@
+//! Every instruction set gives the same bits, and so do any blocks of rows, columns or particles.
+
+mod constraints;
+mod particles;
+
+use bevy_math::Vec3;
+use fearless_simd::Level;
+
+use super::{
+    lanes::{Shared, SharedPoints, levels},
+    lattice::Sheet,
+};
+use crate::{points::Points, topology::test_meshes::random};
+
+/// Sizes that leave remainders in vectors of 4, 8 and 16 lanes.
+const SIZES: [[usize; 2]; 4] = [[5, 7], [17, 33], [50, 50], [2, 2]];
+
+/// Blocks of rows that start at even ones, of columns or of particles: all at once, or cut.
+const CUTS: [&[usize]; 3] = [&[], &[2], &[4, 6, 24]];
+
+/// All that kernels write.
+#[derive(Clone, PartialEq)]
+struct State {
+    columns: usize,
+    rows: usize,
+    position: Points,
+    previous: Points,
+    lost: Points,
+    acceleration: Points,
+    inv_mass: Vec<f32>,
+    normal: Points,
+    depth: Vec<f32>,
+}
+
+fn noise(len: usize, seed: u64, size: f32) -> Points {
+    let axis = |axis: u64| (0..len).map(move |i| (random(i, seed + axis) - 0.5) * size);
+    Points {
+        x: axis(0).collect(),
+        y: axis(1).collect(),
+        z: axis(2).collect(),
+    }
+}
+
+impl State {
+    /// A crumpled sheet at a distance of 1 between neighbours, with pins and different masses.
+    fn sheet([columns, rows]: [usize; 2]) -> Self {
+        let rest = (0..columns * rows)
+            .map(|i| Vec3::new((i % columns) as f32, -((i / columns) as f32), 0.0));
+        Self::new([columns, rows], rest)
+    }
+
+    fn new([columns, rows]: [usize; 2], rest: impl Iterator<Item = Vec3>) -> Self {
+        let n = columns * rows;
+        let mut position = noise(n, 1, 0.6);
+        for (i, p) in rest.enumerate() {
+            position.add(i, p);
+        }
+        let mut previous = noise(n, 4, 0.1);
+        for i in 0..n {
+            previous.add(i, position.get(i));
+        }
+        // A third of the particles is in contact.
+        let normal = noise(n, 10, 2.0);
+        let normal = (0..n).map(|i| {
+            let touching = i % 3 == 1;
+            if touching {
+                normal.get(i).normalize_or(Vec3::Z)
+            } else {
+                Vec3::ZERO
+            }
+        });
+        Self {
+            columns,
+            rows,
+            position,
+            previous,
+            lost: noise(n, 7, 1e-7),
+            acceleration: noise(n, 20, 5.0),
+            inv_mass: (0..n)
+                .map(|i| match i % 23 {
+                    5 => 0.0,
+                    7..=9 => 0.5,
+                    _ => 2.0,
+                })
+                .collect(),
+            normal: normal.collect(),
+            depth: (0..n)
+                .map(|i| if i % 3 == 1 { 0.05 } else { 0.0 })
+                .collect(),
+        }
+    }
+
+    fn with_sheet(&mut self, contact: bool, f: impl FnOnce(Sheet)) {
+        f(Sheet {
+            columns: self.columns,
+            rows: self.rows,
+            position: SharedPoints::new(&mut self.position),
+            inv_mass: Shared::new(&mut self.inv_mass),
+            normal: contact.then(|| SharedPoints::new(&mut self.normal)),
+        });
+    }
+
+    /// The bits of all numbers.
+    fn bits(&self) -> Vec<u32> {
+        let points = [&self.position, &self.previous, &self.lost, &self.normal];
+        let numbers = points.into_iter().flat_map(|p| [&p.x, &p.y, &p.z]);
+        let all = numbers.chain([&self.depth]).flatten();
+        all.map(|v| v.to_bits()).collect()
+    }
+}
+
+/// A range cut into blocks.
+fn blocks(len: usize, cuts: &[usize]) -> Vec<std::ops::Range<usize>> {
+    let inner = cuts.iter().copied().filter(|cut| *cut < len);
+    let ends: Vec<usize> = [0].into_iter().chain(inner).chain([len]).collect();
+    ends.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+/// `kernel` gets a level, a state, and where to cut.
+fn same(start: &State, kernel: impl Fn(Level, &mut State, &[usize])) {
+    let result = |level, cuts| {
+        let mut state = start.clone();
+        kernel(level, &mut state, cuts);
+        state.bits()
+    };
+    let expected = result(levels()[0], CUTS[0]);
+    assert!(expected != start.bits(), "nothing happens");
+    for level in levels() {
+        for cuts in CUTS {
+            let size = [start.columns, start.rows];
+            assert!(
+                result(level, cuts) == expected,
+                "{size:?}, {level:?}, {cuts:?}"
+            );
+        }
+    }
+}
