@@ -4,10 +4,11 @@
 //! cargo run --release -p tailorbird_cloth --example bench -- hang --size 64 --json hang.json
 //! ```
 //!
-//! 5 s at 60 Hz each. Prints a table; `--json` writes the same figures as an array, which `benches/peers` can draw. `--help`
+//! 5 s at 60 Hz each; `kernels` measures each kernel by itself. Prints a table; `--json` writes the same figures as an array, which `benches/peers` can draw. `--help`
 //! lists the rest.
 
 mod cli;
+mod kernels;
 mod machine;
 mod measure;
 mod record;
@@ -17,7 +18,7 @@ use std::{fs::File, io, process::ExitCode};
 
 use clap::Parser as _;
 
-use cli::Args;
+use cli::{Args, What};
 use record::{HEADER, Record};
 
 fn main() -> ExitCode {
@@ -35,6 +36,13 @@ fn run(args: &Args) -> io::Result<()> {
     // Before the first measurement, so that a path that cannot be written costs no time.
     let file = args.json.as_ref().map(File::create).transpose()?;
     println!("{}", machine::describe());
+    if args.what == What::Kernels {
+        let records = kernels::run(args);
+        if let Some(file) = file {
+            serde_json::to_writer_pretty(file, &records)?;
+        }
+        return Ok(());
+    }
     println!("{HEADER}");
     let mut records: Vec<Record> = Vec::new();
     for setup in scene::setups(args) {
