@@ -35,6 +35,7 @@ pub mod grab;
 pub mod material;
 mod memory;
 pub mod normals;
+pub mod numbers;
 pub mod particles;
 pub mod pins;
 pub mod plugin;

@@ -7,6 +7,7 @@ use bevy_reflect::prelude::*;
 use crate::{
     frame::ClothFrame,
     memory::heap,
+    numbers::Numbers,
     points::Points,
     solver::kernels::contact::Contacts,
     topology::{Topology, order::ParticleOrder},
@@ -47,7 +48,7 @@ pub struct ClothParticles {
     pub(crate) areal_density: f32,
     /// 1/mass [1/kg]; 0 is kinematic.
     #[reflect(ignore)]
-    pub(crate) inv_mass: Vec<f32>,
+    pub(crate) inv_mass: Numbers,
     /// Contacts in this substep, noted before the constraints are solved.
     #[reflect(ignore)]
     pub(crate) contacts: Contacts,
@@ -103,7 +104,7 @@ impl ClothParticles {
             step_position: position.clone(),
             lost_displacement: Points::zeroed(len),
             mass: vec![0.0; len],
-            inv_mass: vec![0.0; len],
+            inv_mass: Numbers::zeroed(len),
             position,
             ..Self::default()
         }
@@ -124,14 +125,11 @@ impl ClothParticles {
             &self.acceleration,
             &self.contacts.normal,
         ];
-        let numbers = [
-            &self.mass,
-            &self.inv_mass,
-            &self.lambda,
-            &self.contacts.depth,
-        ];
+        let lists = [&self.mass, &self.lambda];
+        let numbers = [&self.inv_mass, &self.contacts.depth];
         points.map(Points::memory_bytes).iter().sum::<usize>()
-            + numbers.map(heap).iter().sum::<usize>()
+            + lists.map(heap).iter().sum::<usize>()
+            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.pins)
             + heap(&self.pulled)
     }

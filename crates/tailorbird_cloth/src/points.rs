@@ -5,32 +5,32 @@ use fearless_simd::Level;
 
 use crate::solver::kernels::range::is_finite;
 
-use crate::memory::heap;
+use crate::numbers::Numbers;
 
 /// Points (or vectors) stored as three arrays of equal length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
     /// First coordinates.
-    pub x: Vec<f32>,
+    pub x: Numbers,
     /// Second coordinates.
-    pub y: Vec<f32>,
+    pub y: Numbers,
     /// Third coordinates.
-    pub z: Vec<f32>,
+    pub z: Numbers,
 }
 
 impl Points {
     /// `len` points at zero.
     pub fn zeroed(len: usize) -> Self {
         Self {
-            x: vec![0.0; len],
-            y: vec![0.0; len],
-            z: vec![0.0; len],
+            x: Numbers::zeroed(len),
+            y: Numbers::zeroed(len),
+            z: Numbers::zeroed(len),
         }
     }
 
     /// What they take on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        heap(&self.x) + heap(&self.y) + heap(&self.z)
+        self.x.memory_bytes() + self.y.memory_bytes() + self.z.memory_bytes()
     }
 
     /// The number of points.
@@ -58,7 +58,7 @@ impl Points {
     /// When `i` is out of range.
     #[inline]
     pub fn get(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x[i], self.y[i], self.z[i])
+        Vec3::new(self.x.at(i), self.y.at(i), self.z.at(i))
     }
 
     /// Overwrites the point with this index.
@@ -67,9 +67,9 @@ impl Points {
     /// When `i` is out of range.
     #[inline]
     pub fn set(&mut self, i: usize, value: Vec3) {
-        self.x[i] = value.x;
-        self.y[i] = value.y;
-        self.z[i] = value.z;
+        *self.x.at_mut(i) = value.x;
+        *self.y.at_mut(i) = value.y;
+        *self.z.at_mut(i) = value.z;
     }
 
     /// Adds to the point with this index.
@@ -78,9 +78,9 @@ impl Points {
     /// When `i` is out of range.
     #[inline]
     pub fn add(&mut self, i: usize, value: Vec3) {
-        self.x[i] += value.x;
-        self.y[i] += value.y;
-        self.z[i] += value.z;
+        *self.x.at_mut(i) += value.x;
+        *self.y.at_mut(i) += value.y;
+        *self.z.at_mut(i) += value.z;
     }
 
     /// All points in order.
@@ -97,7 +97,7 @@ impl Points {
 
     /// Removes all points and keeps the memory.
     pub fn clear(&mut self) {
-        self.each(Vec::clear);
+        self.each(Numbers::clear);
     }
 
     /// Makes it `len` points, with `value` as the coordinates of new ones.
@@ -105,7 +105,7 @@ impl Points {
         self.each(|values| values.resize(len, value));
     }
 
-    fn each(&mut self, f: impl FnMut(&mut Vec<f32>)) {
+    fn each(&mut self, f: impl FnMut(&mut Numbers)) {
         [&mut self.x, &mut self.y, &mut self.z]
             .into_iter()
             .for_each(f);
@@ -129,15 +129,16 @@ impl Points {
 
 impl FromIterator<Vec3> for Points {
     fn from_iter<I: IntoIterator<Item = Vec3>>(iter: I) -> Self {
-        let mut points = Self::default();
-        let iter = iter.into_iter();
-        points.each(|values| values.reserve_exact(iter.size_hint().0));
+        let (mut x, mut y, mut z) = (Vec::new(), Vec::new(), Vec::new());
         for p in iter {
-            points.x.push(p.x);
-            points.y.push(p.y);
-            points.z.push(p.z);
+            x.push(p.x);
+            y.push(p.y);
+            z.push(p.z);
         }
-        points.each(Vec::shrink_to_fit);
-        points
+        Self {
+            x: x.into(),
+            y: y.into(),
+            z: z.into(),
+        }
     }
 }

@@ -10,7 +10,7 @@ use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::lanes::{Factor, Shared, SharedPoints, V3, Window};
-use crate::points::Points;
+use crate::{numbers::Numbers, points::Points};
 
 /// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ pub(crate) struct Contacts {
     /// Unit normals, 0 without contact.
     pub normal: Points,
     /// How far a particle was pushed out \[m\].
-    pub depth: Vec<f32>,
+    pub depth: Numbers,
     /// Whether there are any.
     pub any: bool,
 }

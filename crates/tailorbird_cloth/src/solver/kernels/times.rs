@@ -22,6 +22,7 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
+    numbers::Numbers,
     points::Points,
     settings::InstructionSet,
     topology::{Topology, lattice::Lattice},
@@ -119,7 +120,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
     let n = side as usize;
     let mut position = wavy(side);
     let corner = position.get(n - 1);
-    let mut inv_mass = vec![1.0 / MASS; n * n];
+    let mut inv_mass = Numbers::from(vec![1.0 / MASS; n * n]);
     let sheet = Sheet {
         columns: n,
         rows: n,
@@ -167,7 +168,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
     let n = side as usize;
     let mut position = wavy(side);
     let (mut previous, mut lost) = (position.clone(), Points::zeroed(n * n));
-    let mut inv_mass = vec![1.0 / MASS; n * n];
+    let mut inv_mass = Numbers::from(vec![1.0 / MASS; n * n]);
     // Without gravity, so that the sheet stays where it is.
     let verlet = Verlet {
         seconds: SECONDS,

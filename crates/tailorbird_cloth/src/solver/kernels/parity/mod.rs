@@ -10,7 +10,7 @@ use super::{
     lanes::{Shared, SharedPoints, levels},
     lattice::Sheet,
 };
-use crate::{points::Points, topology::test_meshes::random};
+use crate::{numbers::Numbers, points::Points, topology::test_meshes::random};
 
 /// Sizes that leave remainders in vectors of 4, 8 and 16 lanes.
 const SIZES: [[usize; 2]; 4] = [[5, 7], [17, 33], [50, 50], [2, 2]];
@@ -27,9 +27,9 @@ struct State {
     previous: Points,
     lost: Points,
     acceleration: Points,
-    inv_mass: Vec<f32>,
+    inv_mass: Numbers,
     normal: Points,
-    depth: Vec<f32>,
+    depth: Numbers,
 }
 
 fn noise(len: usize, seed: u64, size: f32) -> Points {
