@@ -15,7 +15,7 @@
 //! the columns of a sheet lie in memory; rows are transposed and the chains of a mesh gathered into the same form.
 //!
 //! Guards: q on the diagonal is at least L²/4, and the right side at most L²/4, as the quadratic form overshoots in strong
-//! compression; the diagonal has a relative floor, as a straight chain that is held at both ends is singular.
+//! compression; compliance has a relative floor, as a straight chain that is held at both ends is singular.
 //!
 //! A particle in contact moves along the surface alone: its inverse mass is w (I − n nᵀ), n being the contact's unit normal and
 //! 0 where there is none.
@@ -38,9 +38,10 @@ const NO_MASS: f32 = 1e-30;
 /// their edge.
 const LEAST_PIVOT: f32 = 0.05;
 
-/// The part of (w_k + w_{k+1}) L² that is added to the diagonal. With 10⁻⁶ a row that is taut between two pins never came to rest
-/// (13 mm/s); with 10⁻⁴ it does, and stretches no more.
-const RELATIVE_COMPLIANCE: f32 = 1e-4;
+/// The least α̃_k L_k², as a part of (w_k + w_{k+1}) L²: the tension of what is taut and straight, such as a row between two
+/// pins, would have no bounds else, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet
+/// that hangs stretches half as much again.
+const LEAST_COMPLIANCE: f32 = 5e-4;
 
 /// Where the chains lie.
 #[derive(Clone, Copy)]
@@ -284,7 +285,8 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         let d = s.b - s.a;
         let q = d.dot(d);
         let w = s.w_a + s.w_b;
-        let mut diagonal = w * (q.max(quarter) + l2 * RELATIVE_COMPLIANCE) + (alpha + least_w);
+        let stretch = alpha.max(w * (l2 * LEAST_COMPLIANCE));
+        let mut diagonal = w * q.max(quarter) + (stretch + least_w);
         let mut dd = s.d.dot(d);
         if CONTACT {
             let n_b = lines.normal(simd, e + 1);
