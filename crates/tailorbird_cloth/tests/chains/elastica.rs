@@ -7,7 +7,7 @@ use crate::scene::{G, Scene, Sheet, rigid};
 
 /// How far the free end hangs below the clamp, by the length, where `weight` = σ g L³/B. Runge–Kutta, and the curvature at the
 /// clamp by bisection.
-fn elastica(weight: f64) -> f64 {
+pub fn elastica(weight: f64) -> f64 {
     let shoot = |curvature: f64| {
         let (mut angle, mut bend, mut droop) = (0.0_f64, curvature, 0.0);
         let n = 2000;

@@ -11,7 +11,7 @@ use crate::scene::{G, Scene, Sheet, rigid};
 enum After {
     /// As if nothing had been.
     Well,
-    /// Finite and in one piece, but it may be wound up in itself, where rows and columns ask for opposite things and it trembles.
+    /// Finite and in one piece, but it may be wound up in itself, where rows and columns ask for opposite things. It comes to rest.
     Knotted,
 }
 
@@ -44,6 +44,12 @@ fn survives(
         stretch.mean < mean && stretch.p99 < p99,
         "{what}: {stretch:?}"
     );
+    if let After::Knotted = after {
+        sheet.steps(900);
+        let speed = sheet.speed();
+        println!("{what}: {speed:.2e} m/s");
+        assert!(speed < 0.02, "{what}: {speed} m/s");
+    }
 }
 
 fn upright(resolution: UVec2) -> Scene {

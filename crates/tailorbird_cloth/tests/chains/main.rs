@@ -10,5 +10,7 @@ mod conservation;
 mod elastica;
 mod extreme;
 mod memory;
+mod locking;
+mod meshes;
 mod scene;
 mod stretch;

@@ -17,6 +17,8 @@ pub const G: f32 = 9.81;
 pub struct Scene {
     pub size: Vec2,
     pub resolution: UVec2,
+    /// In place of the grid of this size and resolution.
+    pub cloth: Option<Cloth>,
     pub material: ClothMaterial,
     pub pins: ClothPins,
     pub gravity: Vec3,
@@ -39,6 +41,7 @@ impl Default for Scene {
         Self {
             size: Vec2::splat(2.0),
             resolution: UVec2::splat(32),
+            cloth: None,
             material: rigid(),
             pins: ClothPins::default(),
             gravity: Vec3::NEG_Z * G,
@@ -123,7 +126,8 @@ impl Sheet {
         });
         let sheets: Vec<Entity> = (0..scene.sheets)
             .map(|k| {
-                let cloth = Cloth::grid(scene.size, scene.resolution).centered();
+                let grid = || Cloth::grid(scene.size, scene.resolution).centered();
+                let cloth = scene.cloth.clone().unwrap_or_else(grid);
                 let at = Transform::from_xyz(3.0 * k as f32, 0.0, 0.0);
                 let bundle = (cloth, scene.material, scene.pins.clone(), scene.sleep, at);
                 app.world_mut().spawn(bundle).id()
@@ -191,6 +195,17 @@ impl Sheet {
 
     pub fn substep_seconds(&self) -> f32 {
         self.app.world().resource::<ClothStep>().substep_seconds()
+    }
+
+    /// How far particles moved in the last step of 1/60 s, by its length, root of the mean square [m/s].
+    pub fn speed(&self) -> f64 {
+        let particles = self.particles();
+        let (to, from) = (particles.points(), particles.previous_points());
+        let moved = to.iter().zip(from.iter());
+        let sum: f64 = moved
+            .map(|(to, from)| f64::from(to.distance_squared(from)))
+            .sum();
+        60.0 * (sum / particles.len() as f64).sqrt()
     }
 
     pub fn stretch(&self) -> Stretch {

@@ -1,0 +1,104 @@
+//! Sheets as triangle meshes that are no grids.
+
+use bevy_math::{Vec2, Vec3};
+use tailorbird_cloth::prelude::*;
+
+/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
+fn unit(key: u64) -> f32 {
+    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
+}
+
+/// A sheet around the origin, columns along +x and rows along −y, whose inner vertices are moved by up to a quarter of a cell
+/// each way and whose cells are cut along their shorter diagonals. Vertices of the first `still` rows are moved along x alone.
+pub fn irregular(size: Vec2, [columns, rows]: [usize; 2], still: usize, seed: u64) -> Cloth {
+    let cell = size / Vec2::new((columns - 1) as f32, (rows - 1) as f32);
+    let moved = |i: usize, axis: u64| 0.25 * unit(i as u64 ^ (4 * seed + axis) << 40);
+    let mut positions = Vec::with_capacity(columns * rows);
+    for i in 0..columns * rows {
+        let (row, column) = (i / columns, i % columns);
+        let (mut x, mut y) = (column as f32, row as f32);
+        if column > 0 && column + 1 < columns {
+            x += moved(i, 1);
+        }
+        if row >= still.max(1) && row + 1 < rows {
+            y += moved(i, 2);
+        }
+        positions.push(Vec3::new(
+            x * cell.x - 0.5 * size.x,
+            0.5 * size.y - y * cell.y,
+            0.0,
+        ));
+    }
+    let mut triangles = Vec::new();
+    for row in 0..rows - 1 {
+        for column in 0..columns - 1 {
+            let a = row * columns + column;
+            let [a, b, c, d] = [a, a + columns, a + columns + 1, a + 1];
+            let falling =
+                positions[a].distance(positions[c]) <= positions[b].distance(positions[d]);
+            triangles.extend(if falling {
+                [[a, b, c], [a, c, d]]
+            } else {
+                [[a, b, d], [d, b, c]]
+            });
+        }
+    }
+    mesh(positions, &triangles)
+}
+
+/// A strip cut at 45° to the threads, upright, its upper end at y = 0: `length` by `width`, threads `spacing` apart.
+pub fn bias_strip(length: f32, width: f32, spacing: f32) -> Cloth {
+    let half = spacing * std::f32::consts::FRAC_1_SQRT_2;
+    let (down, aside) = (
+        (length / half).round() as i32,
+        (0.5 * width / half).round() as i32,
+    );
+    // Vertex (k, s): k half diagonals down, s aside, of the same parity.
+    let mut number = std::collections::HashMap::new();
+    let mut positions = Vec::new();
+    for k in 0..=down {
+        for s in -aside..=aside {
+            if (k + s) % 2 == 0 {
+                number.insert((k, s), positions.len());
+                positions.push(Vec3::new(s as f32 * half, -k as f32 * half, 0.0));
+            }
+        }
+    }
+    let mut triangles = Vec::new();
+    for (&(k, s), &top) in &number {
+        let at = |k, s| number.get(&(k, s)).copied();
+        let (left, right, bottom) = (at(k + 1, s - 1), at(k + 1, s + 1), at(k + 2, s));
+        match (left, right, bottom) {
+            // The diagonals alternate.
+            (Some(l), Some(r), Some(b)) if (k + s) % 4 == 0 => {
+                triangles.extend([[top, l, r], [r, l, b]]);
+            }
+            (Some(l), Some(r), Some(b)) => triangles.extend([[top, l, b], [top, b, r]]),
+            (Some(l), Some(r), None) => triangles.push([top, l, r]),
+            (Some(l), None, Some(b)) => triangles.push([top, l, b]),
+            (None, Some(r), Some(b)) => triangles.push([top, b, r]),
+            _ => (),
+        }
+    }
+    // At the upper end, halves of cells.
+    for s in -aside..=aside {
+        if let (Some(&l), Some(&r), Some(&b)) = (
+            number.get(&(0, s)),
+            number.get(&(0, s + 2)),
+            number.get(&(1, s + 1)),
+        ) {
+            triangles.push([l, b, r]);
+        }
+    }
+    triangles.sort_unstable();
+    mesh(positions, &triangles)
+}
+
+fn mesh(positions: Vec<Vec3>, triangles: &[[usize; 3]]) -> Cloth {
+    let indices: Vec<u32> = triangles.iter().flatten().map(|&i| i as u32).collect();
+    Cloth::mesh(positions, indices)
+}
