@@ -4,8 +4,8 @@
 //! cargo run --release -p tailorbird_cloth --example bench -- hang --size 64 --json hang.json
 //! ```
 //!
-//! 5 s at 60 Hz each; `kernels` measures each kernel by itself. Prints a table; `--json` writes the same figures as an array, which `benches/peers` can draw. `--help`
-//! lists the rest.
+//! 5 s at 60 Hz each; `kernels` measures each kernel by itself. Prints a table; `--json` writes the same figures as an array,
+//! which `benches/peers` can draw (but for `kernels`). `--help` lists the rest.
 
 mod cli;
 mod kernels;

@@ -21,5 +21,6 @@ pub(crate) mod shear;
 pub mod sphere;
 pub(crate) mod tether;
 pub mod times;
+pub(crate) mod vectors;
 pub mod verlet;
 pub(crate) mod viscosity;
