@@ -122,17 +122,19 @@ fn folds(values: &[f32], least: f32) -> (usize, f32) {
     (count, mean)
 }
 
+/// How often a sheet folds is a matter of chance within some: the means over several places of the sphere agree.
 #[test]
 fn folds_do_not_depend_on_how_the_sheet_is_cut() {
     let n = 48;
     let size = Vec2::splat(2.0);
-    let drape = |cloth: Cloth| {
+    let drape = |cloth: Cloth, k: f32| {
         let mut sheet = Sheet::new(&Scene {
             cloth: Some(cloth),
             material: ClothMaterial {
                 damping: 1.0,
                 ..rigid()
             },
+            sphere: Some((Vec3::new(0.002 * k, -0.001 * k, -0.55), 0.5)),
             // With 8, irregular meshes have a quarter more folds.
             substeps: Some(16),
             ..Scene::drape(UVec2::splat(n as u32))
@@ -142,23 +144,19 @@ fn folds_do_not_depend_on_how_the_sheet_is_cut() {
         let particles = sheet.particles();
         let out = |i: usize| particles.position(i).truncate().length();
         let radius: Vec<f32> = rim(n).into_iter().map(out).collect();
-        folds(&radius, 0.03)
+        let (count, depth) = folds(&radius, 0.03);
+        println!("{count} folds, {depth:.3} m deep");
+        Vec2::new(count as f32, depth)
     };
-    let (count, depth) = drape(Cloth::grid(size, UVec2::splat(n as u32)).centered());
-    println!("grid: {count} folds, {depth:.3} m deep");
-    assert!(count >= 8, "{count}");
-    for seed in [1, 3] {
-        let irregular = drape(irregular(size, [n, n], 0, seed));
-        println!(
-            "irregular: {} folds, {:.3} m deep",
-            irregular.0, irregular.1
-        );
-        assert!(
-            irregular.0.abs_diff(count) <= 1 + count / 5,
-            "{irregular:?}"
-        );
-        assert!((irregular.1 / depth - 1.0).abs() < 0.3, "{irregular:?}");
-    }
+    const RUNS: u32 = 5;
+    let mean = |of: &dyn Fn(u32) -> Vec2| (0..RUNS).map(of).sum::<Vec2>() / RUNS as f32;
+    let grid = Cloth::grid(size, UVec2::splat(n as u32)).centered();
+    let grid = mean(&|k| drape(grid.clone(), k as f32));
+    let irregular = mean(&|k| drape(irregular(size, [n, n], 0, u64::from(k)), k as f32));
+    println!("grid {grid}, irregular {irregular}");
+    assert!(grid.x >= 8.0, "{grid}");
+    let ratio = irregular / grid;
+    assert!((ratio - 1.0).abs().max_element() < 0.25, "{ratio}");
 }
 
 /// Hinges of cells cut at random droop by 10 to 20 % more than a continuum.
