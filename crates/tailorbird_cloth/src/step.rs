@@ -218,10 +218,12 @@ pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
     cloths: Query<(&ClothSolver, &ClothTopology), With<Cloth>>,
 ) {
-    let needed = cloths
-        .iter()
-        .map(|(solver, topology)| step.substeps_of(*solver, topology));
-    step.substeps = needed.max().unwrap_or(1);
+    step.substeps = step.fixed_substeps.unwrap_or_else(|| {
+        let needed = cloths
+            .iter()
+            .map(|(solver, topology)| step.substeps_of(*solver, topology));
+        needed.max().unwrap_or(1)
+    });
 }
 
 /// Calls `f` for each item of a query, on several threads where [`ClothStep::parallel`] says that it pays.

@@ -9,7 +9,7 @@ use super::kernels::{
     mesh,
     rigid_motion::RigidMotion,
     shear::{self, Shear},
-    tether,
+    squeeze, tether,
     verlet::Verlet,
     viscosity::{self, Beside, Motion},
 };
@@ -169,6 +169,44 @@ impl Pass<'_> {
         });
         if !odd {
             solve_columns();
+        }
+    }
+}
+
+/// Takes the velocity of particles whose edges are squeezed as nothing ordinary squeezes them.
+pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParticles) {
+    if particles.len() != topology.particles() {
+        return;
+    }
+    if let Some(lattice) = &topology.lattice {
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            ..
+        } = particles;
+        let sheet = Sheet {
+            columns: lattice.columns as usize,
+            rows: lattice.rows as usize,
+            position: SharedPoints::new(position),
+            inv_mass: Shared::new(inv_mass),
+            normal: None,
+        };
+        let previous = SharedPoints::new(previous_position);
+        squeeze::stop(level, sheet, previous, lattice.spacing);
+    } else if let Some(fabric) = &topology.fabric {
+        for ([a, b], rest_length) in fabric.chains().edges() {
+            let ends = [a, b].map(|i| i as usize);
+            let [from, to] = ends.map(|i| particles.position.get(i));
+            if from.distance_squared(to) < squeeze::LEAST * rest_length * rest_length {
+                for i in ends {
+                    if particles.inv_mass[i] > 0.0 {
+                        particles
+                            .previous_position
+                            .set(i, particles.position.get(i));
+                    }
+                }
+            }
         }
     }
 }

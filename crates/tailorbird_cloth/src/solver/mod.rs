@@ -136,6 +136,9 @@ pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
                 };
                 pass.solve(cloth.tethers, &mut cloth.particles);
             }
+            if substep.left() == 1 {
+                chains::calm(substep.level, topology, &mut cloth.particles);
+            }
         }
         ClothSolver::GaussSeidel => {
             classic::solve(substep, topology, material, &mut cloth.particles);

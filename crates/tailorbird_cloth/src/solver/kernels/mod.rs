@@ -19,6 +19,7 @@ pub mod rigid;
 pub mod rigid_motion;
 pub(crate) mod shear;
 pub mod sphere;
+pub(crate) mod squeeze;
 pub(crate) mod tether;
 pub mod times;
 pub(crate) mod vectors;

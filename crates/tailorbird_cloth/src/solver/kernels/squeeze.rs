@@ -1,0 +1,140 @@
+//! Particles at the ends of edges that are squeezed to much less than their length.
+//!
+//! Nothing ordinary squeezes an edge that far: cloth buckles first. It happens where a sheet is wound up in itself, after pins that
+//! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; without velocity
+//! it comes to rest, and mostly undoes itself.
+
+#![expect(clippy::doc_markdown, reason = "formulas")]
+
+use bevy_math::Vec2;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+
+use super::{
+    lanes::{SharedPoints, Window, each_window},
+    lattice::Sheet,
+    vectors::V3,
+};
+
+/// The least q/L² of an edge whose ends keep their velocity.
+pub(crate) const LEAST: f32 = 0.5;
+
+/// Takes the velocity of free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns, by moving
+/// `previous` to where they are. `spacing` is between columns and between rows \[m\].
+pub(crate) fn stop(level: Level, sheet: Sheet, previous: SharedPoints, spacing: Vec2) {
+    sheet.check();
+    let n = sheet.columns * sheet.rows;
+    assert_eq!(
+        [previous.x.len(), previous.y.len(), previous.z.len()],
+        [n; 3],
+        "one of each for {n} particles"
+    );
+    dispatch!(level, simd => stop_with(simd, sheet, previous, spacing));
+}
+
+#[inline(always)]
+fn stop_with<S: Simd>(simd: S, sheet: Sheet, previous: SharedPoints, spacing: Vec2) {
+    let columns = sheet.columns;
+    let least = spacing * spacing * LEAST;
+    for row in 0..sheet.rows {
+        let first = row * columns;
+        each_window(
+            simd,
+            0..columns - 1,
+            #[inline(always)]
+            |window| stop_ends(simd, sheet, previous, window, [first, first + 1], least.x),
+        );
+        if row + 1 < sheet.rows {
+            each_window(
+                simd,
+                0..columns,
+                #[inline(always)]
+                |window| {
+                    stop_ends(
+                        simd,
+                        sheet,
+                        previous,
+                        window,
+                        [first, first + columns],
+                        least.y,
+                    )
+                },
+            );
+        }
+    }
+}
+
+/// For the edges from `ends[0]` to `ends[1]`, each with the window added.
+#[inline(always)]
+fn stop_ends<S: Simd>(
+    simd: S,
+    sheet: Sheet,
+    previous: SharedPoints,
+    window: Window,
+    ends: [usize; 2],
+    least: f32,
+) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let places: [V3<S>; 2] = [
+        sheet.position.load_at(simd, window, ends[0]),
+        sheet.position.load_at(simd, window, ends[1]),
+    ];
+    let d = places[1] - places[0];
+    let squeezed = d.dot(d).simd_lt(S::f32s::splat(simd, least));
+    if !squeezed.any_true() {
+        return;
+    }
+    for (place, end) in places.into_iter().zip(ends) {
+        let free = sheet.inv_mass.load_at(simd, window, end).simd_gt(zero);
+        let before: V3<S> = previous.load_at(simd, window, end);
+        previous.store_at(simd, window, end, place.select(squeezed & free, before));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_math::Vec3;
+
+    use super::*;
+    use crate::{
+        points::Points,
+        solver::kernels::lanes::{Shared, levels},
+    };
+
+    #[test]
+    fn those_at_squeezed_edges_stop_and_no_others() {
+        for [columns, rows] in [[2, 2], [5, 7], [17, 33]] {
+            for squeezed in 0..columns * rows {
+                for level in levels() {
+                    let at = |i: usize| Vec3::new((i % columns) as f32, (i / columns) as f32, 0.0);
+                    let mut position: Points = (0..columns * rows).map(at).collect();
+                    // Half way to the neighbour on the right, and out of the plane, so that the edge to the left is
+                    // longer and that to the right shorter.
+                    let moved = at(squeezed) + Vec3::new(0.5, 0.0, 0.1);
+                    position.set(squeezed, moved);
+                    let mut previous: Points = position.iter().map(|p| p - Vec3::Z).collect();
+                    let mut inv_mass = vec![1.0; columns * rows];
+                    inv_mass[0] = 0.0;
+                    let sheet = Sheet {
+                        columns,
+                        rows,
+                        position: SharedPoints::new(&mut position),
+                        inv_mass: Shared::new(&mut inv_mass),
+                        normal: None,
+                    };
+                    stop(level, sheet, SharedPoints::new(&mut previous), Vec2::ONE);
+                    for i in 0..columns * rows {
+                        let right = squeezed % columns + 1 < columns;
+                        let ends = [squeezed, squeezed + 1];
+                        let stops = right && ends.contains(&i) && i != 0;
+                        let velocity = if stops { Vec3::ZERO } else { Vec3::Z };
+                        let is = position.get(i) - previous.get(i);
+                        assert!(
+                            is.distance(velocity) < 1e-6,
+                            "{columns}x{rows}: {i}, {squeezed}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
