@@ -5,7 +5,8 @@ use bevy_ecs::{
     intern::Interned,
     message::signal_message_update_system,
     prelude::*,
-    schedule::{ScheduleLabel, SingleThreadedExecutor},
+    schedule::{IntoScheduleConfigs, ScheduleLabel, SingleThreadedExecutor},
+    system::ScheduleSystem,
 };
 use bevy_transform::TransformSystems;
 
@@ -23,7 +24,7 @@ use crate::{
     pins::apply_pins,
     prelude::*,
     runner::{OwnStages, simulate_cloths},
-    schedule::run_substeps,
+    schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
     sleep::{rest_cloths, wake_cloths},
     solver::{solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_is_whole, step_runs},
@@ -76,50 +77,66 @@ impl Plugin for ClothPlugin {
         )
         .add_systems(
             self.schedule,
+            // They have the whole world, of which Bevy's signal needs nothing that cloth touches.
+            (
+                run_part::<Prepare>
+                    .in_set(ClothSystems::Prepare)
+                    .ambiguous_with(signal_message_update_system),
+                run_part::<Simulate>
+                    .in_set(ClothSystems::Simulate)
+                    .ambiguous_with(signal_message_update_system),
+                run_part::<Writeback>
+                    .in_set(ClothSystems::Writeback)
+                    .ambiguous_with(signal_message_update_system),
+            ),
+        );
+        add_part(
+            app,
+            Prepare,
+            (
+                start_clock,
+                begin_step,
+                prepare_frames,
+                build_topology,
+                apply_pins,
+                build_tethers,
+                plan_substeps,
+                (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
+                wake_cloths,
+                (
+                    apply_grab,
+                    apply_forces,
+                    apply_wind.run_if(not(step_is_whole)),
+                )
+                    .chain()
+                    .run_if(step_runs),
+            )
+                .chain(),
+        );
+        add_part(
+            app,
+            Simulate,
+            (
+                simulate_cloths.run_if(step_is_whole),
+                run_substeps.run_if(step_runs.and_then(not(step_is_whole))),
+            )
+                .chain(),
+        );
+        add_part(
+            app,
+            Writeback,
             (
                 (
-                    start_clock,
-                    begin_step,
-                    prepare_frames,
-                    build_topology,
-                    apply_pins,
-                    build_tethers,
-                    plan_substeps,
-                    (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
-                    wake_cloths,
-                    (
-                        apply_grab,
-                        apply_forces,
-                        apply_wind.run_if(not(step_is_whole)),
-                    )
-                        .chain()
-                        .run_if(step_runs),
+                    guard_finite.run_if(step_runs),
+                    recompute_normals,
+                    update_bounds,
+                    rest_cloths.run_if(step_runs),
                 )
                     .chain()
-                    .in_set(ClothSystems::Prepare),
-                (
-                    simulate_cloths.run_if(step_is_whole),
-                    run_substeps
-                        .run_if(step_runs.and_then(not(step_is_whole)))
-                        // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
-                        .ambiguous_with(signal_message_update_system),
-                )
-                    .chain()
-                    .in_set(ClothSystems::Simulate),
-                (
-                    (
-                        guard_finite.run_if(step_runs),
-                        recompute_normals,
-                        update_bounds,
-                        rest_cloths.run_if(step_runs),
-                    )
-                        .chain()
-                        .run_if(not(step_is_whole)),
-                    stop_clock,
-                )
-                    .chain()
-                    .in_set(ClothSystems::Writeback),
-            ),
+                    .run_if(not(step_is_whole)),
+                stop_clock,
+            )
+                .chain(),
         );
 
         app.init_schedule(ClothSubstep)
@@ -153,6 +170,19 @@ impl Plugin for ClothPlugin {
         let own = app.get_schedule(ClothSubstep).map(OwnStages::new);
         app.insert_resource(own.unwrap_or_default());
     }
+}
+
+/// Puts systems into a schedule of their own, on one thread: most take less time than a thread to wake.
+fn add_part<M>(
+    app: &mut App,
+    part: impl ScheduleLabel + Clone,
+    systems: impl IntoScheduleConfigs<ScheduleSystem, M>,
+) {
+    app.init_schedule(part.clone())
+        .edit_schedule(part.clone(), |schedule| {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        })
+        .add_systems(part, systems);
 }
 
 fn register_types(app: &mut App) {

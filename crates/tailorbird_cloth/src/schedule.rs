@@ -17,6 +17,23 @@ pub enum ClothSystems {
     Writeback,
 }
 
+/// The systems of [`ClothSystems::Prepare`].
+#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Prepare;
+
+/// The systems of [`ClothSystems::Simulate`].
+#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Simulate;
+
+/// The systems of [`ClothSystems::Writeback`].
+#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Writeback;
+
+/// Runs the systems of a part of the step.
+pub(crate) fn run_part<L: ScheduleLabel + Default>(world: &mut World) {
+    world.run_schedule(L::default());
+}
+
 /// Runs once per substep. [`ClothStep`] tells which it is and how long it lasts.
 #[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClothSubstep;
