@@ -112,8 +112,14 @@ impl ClothStagesItem<'_, '_> {
                 ClothShading::Flat => topology.triangles().len(),
             };
             *current = std::iter::repeat_n(Vec3::Z, len).collect();
+            previous.clone_from(current);
         }
-        previous.copy_from(current);
+        match shading {
+            // All are written anew.
+            ClothShading::Smooth => std::mem::swap(previous, current),
+            // A triangle without area keeps the normal it had.
+            ClothShading::Flat => previous.copy_from(current),
+        }
         match (shading, &topology.lattice, topology.grid) {
             // The cells of a mesh are cut in its own way.
             (ClothShading::Smooth, Some(lattice), Some(_)) => {
