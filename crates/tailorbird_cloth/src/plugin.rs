@@ -26,7 +26,7 @@ use crate::{
     runner::{OwnStages, simulate_cloths},
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
     sleep::{rest_cloths, wake_cloths},
-    solver::{solve_constraints, verlet_step},
+    solver::{calm_knots, solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
     validate::guard_finite,
@@ -162,7 +162,7 @@ impl Plugin for ClothPlugin {
                         .in_set(ClothSubstepSystems::Integrate),
                     find_contacts.in_set(ClothSubstepSystems::Approach),
                     solve_constraints.in_set(ClothSubstepSystems::Solve),
-                    (collide_sphere, collide_half_space)
+                    (collide_sphere, collide_half_space, calm_knots)
                         .chain()
                         .in_set(ClothSubstepSystems::Collide),
                 ),

@@ -79,5 +79,6 @@ impl ClothStagesItem<'_, '_> {
         solver::solve(substep, self);
         colliders.collide_spheres(substep, self);
         colliders.collide_half_spaces(substep, self);
+        solver::calm(substep, self);
     }
 }

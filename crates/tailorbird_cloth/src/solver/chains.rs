@@ -173,18 +173,20 @@ impl Pass<'_> {
     }
 }
 
-/// Takes the velocity of particles whose edges are squeezed as nothing ordinary squeezes them.
+/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole.
 pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParticles) {
-    if particles.len() != topology.particles() {
+    if particles.is_empty() || particles.len() != topology.particles() {
         return;
     }
+    let ClothParticles {
+        position,
+        previous_position,
+        mass,
+        inv_mass,
+        ..
+    } = particles;
+    let whole = RigidMotion::fit(mass, position, previous_position);
     if let Some(lattice) = &topology.lattice {
-        let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            ..
-        } = particles;
         let sheet = Sheet {
             columns: lattice.columns as usize,
             rows: lattice.rows as usize,
@@ -193,17 +195,16 @@ pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParti
             normal: None,
         };
         let previous = SharedPoints::new(previous_position);
-        squeeze::stop(level, sheet, previous, lattice.spacing);
+        squeeze::stop(level, sheet, previous, lattice.spacing, whole);
     } else if let Some(fabric) = &topology.fabric {
         for ([a, b], rest_length) in fabric.chains().edges() {
             let ends = [a, b].map(|i| i as usize);
-            let [from, to] = ends.map(|i| particles.position.get(i));
-            if from.distance_squared(to) < squeeze::LEAST * rest_length * rest_length {
-                for i in ends {
-                    if particles.inv_mass[i] > 0.0 {
-                        particles
-                            .previous_position
-                            .set(i, particles.position.get(i));
+            let places = ends.map(|i| position.get(i));
+            let least = squeeze::LEAST * rest_length * rest_length;
+            if places[0].distance_squared(places[1]) < least {
+                for (i, place) in ends.into_iter().zip(places) {
+                    if inv_mass[i] > 0.0 {
+                        previous_position.set(i, place - whole.at(place));
                     }
                 }
             }

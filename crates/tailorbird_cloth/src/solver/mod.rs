@@ -23,7 +23,8 @@ use kernels::verlet::Verlet;
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 pub enum ClothSolver {
-    /// Whole lines of edges at once, exactly; tethers to the pins.
+    /// Whole lines of edges at once, exactly; tethers to the pins. Particles at edges that are squeezed to less than 0.7 of their
+    /// length at the end of a step get the motion of the whole.
     #[default]
     Chains,
     /// Spring by spring: Jakobsen's relaxation, and XPBD where there is compliance.
@@ -119,6 +120,22 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
     particles.substep_seconds = seconds;
 }
 
+/// Lets what is wound up in itself come to rest, after the last substep: see [`ClothSolver::Chains`].
+pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
+    let substep = step.in_progress();
+    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+        calm(&substep, &mut cloth);
+    });
+}
+
+/// What [`calm_knots`] does for one cloth.
+pub(crate) fn calm(substep: &Substep, cloth: &mut ClothStagesItem) {
+    let solves = *cloth.solver == ClothSolver::Chains && substep.iterations > 0;
+    if solves && substep.left() == 1 {
+        chains::calm(substep.level, cloth.topology, &mut cloth.particles);
+    }
+}
+
 /// Holds the constraints of one cloth.
 pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
     let (topology, material) = (cloth.topology, cloth.material);
@@ -135,9 +152,6 @@ pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
                     number: substep.index + k,
                 };
                 pass.solve(cloth.tethers, &mut cloth.particles);
-            }
-            if substep.left() == 1 {
-                chains::calm(substep.level, topology, &mut cloth.particles);
             }
         }
         ClothSolver::GaussSeidel => {

@@ -19,6 +19,17 @@ pub struct RigidMotion {
 const SAMPLES: usize = 256;
 
 impl RigidMotion {
+    /// What a point at the origin moves by \[m\]; one at x by the cross product of the rotation and x more.
+    #[inline]
+    pub fn at_origin(&self) -> Vec3 {
+        self.displacement - self.rotation.cross(self.center)
+    }
+
+    /// What a point moves by \[m\].
+    pub fn at(&self, point: Vec3) -> Vec3 {
+        self.rotation.cross(point) + self.at_origin()
+    }
+
     /// The rigid motion that has the linear and the angular momentum of these particles, of which it takes a sample.
     /// Without rotation where they lie in a line.
     pub fn fit(mass: &[f32], position: &Points, previous: &Points) -> Self {

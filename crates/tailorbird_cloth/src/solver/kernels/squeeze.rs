@@ -1,8 +1,8 @@
 //! Particles at the ends of edges that are squeezed to much less than their length.
 //!
 //! Nothing ordinary squeezes an edge that far: cloth buckles first. It happens where a sheet is wound up in itself, after pins that
-//! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; without velocity
-//! it comes to rest, and mostly undoes itself.
+//! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; with the motion
+//! of the whole in place of its own it comes to rest, and mostly undoes itself.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -12,15 +12,22 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::{
     lanes::{SharedPoints, Window, each_window},
     lattice::Sheet,
+    rigid_motion::RigidMotion,
     vectors::V3,
 };
 
-/// The least q/L² of an edge whose ends keep their velocity.
+/// The least q/L² of an edge whose ends keep a motion of their own.
 pub(crate) const LEAST: f32 = 0.5;
 
-/// Takes the velocity of free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns, by moving
-/// `previous` to where they are. `spacing` is between columns and between rows \[m\].
-pub(crate) fn stop(level: Level, sheet: Sheet, previous: SharedPoints, spacing: Vec2) {
+/// Gives free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns the motion of the whole, by
+/// moving `previous`. `spacing` is between columns and between rows \[m\].
+pub(crate) fn stop(
+    level: Level,
+    sheet: Sheet,
+    previous: SharedPoints,
+    spacing: Vec2,
+    whole: RigidMotion,
+) {
     sheet.check();
     let n = sheet.columns * sheet.rows;
     assert_eq!(
@@ -28,11 +35,17 @@ pub(crate) fn stop(level: Level, sheet: Sheet, previous: SharedPoints, spacing: 
         [n; 3],
         "one of each for {n} particles"
     );
-    dispatch!(level, simd => stop_with(simd, sheet, previous, spacing));
+    dispatch!(level, simd => stop_with(simd, sheet, previous, spacing, whole));
 }
 
 #[inline(always)]
-fn stop_with<S: Simd>(simd: S, sheet: Sheet, previous: SharedPoints, spacing: Vec2) {
+fn stop_with<S: Simd>(
+    simd: S,
+    sheet: Sheet,
+    previous: SharedPoints,
+    spacing: Vec2,
+    whole: RigidMotion,
+) {
     let columns = sheet.columns;
     let least = spacing * spacing * LEAST;
     for row in 0..sheet.rows {
@@ -41,7 +54,17 @@ fn stop_with<S: Simd>(simd: S, sheet: Sheet, previous: SharedPoints, spacing: Ve
             simd,
             0..columns - 1,
             #[inline(always)]
-            |window| stop_ends(simd, sheet, previous, window, [first, first + 1], least.x),
+            |window| {
+                stop_ends(
+                    simd,
+                    sheet,
+                    previous,
+                    window,
+                    [first, first + 1],
+                    least.x,
+                    whole,
+                )
+            },
         );
         if row + 1 < sheet.rows {
             each_window(
@@ -56,6 +79,7 @@ fn stop_with<S: Simd>(simd: S, sheet: Sheet, previous: SharedPoints, spacing: Ve
                         window,
                         [first, first + columns],
                         least.y,
+                        whole,
                     )
                 },
             );
@@ -72,6 +96,7 @@ fn stop_ends<S: Simd>(
     window: Window,
     ends: [usize; 2],
     least: f32,
+    whole: RigidMotion,
 ) {
     let zero = S::f32s::splat(simd, 0.0);
     let places: [V3<S>; 2] = [
@@ -83,10 +108,13 @@ fn stop_ends<S: Simd>(
     if !squeezed.any_true() {
         return;
     }
+    let rotation = V3::splat(simd, whole.rotation);
+    let at_origin = V3::splat(simd, whole.at_origin());
     for (place, end) in places.into_iter().zip(ends) {
+        let from = place - (rotation.cross(place) + at_origin);
         let free = sheet.inv_mass.load_at(simd, window, end).simd_gt(zero);
         let before: V3<S> = previous.load_at(simd, window, end);
-        previous.store_at(simd, window, end, place.select(squeezed & free, before));
+        previous.store_at(simd, window, end, from.select(squeezed & free, before));
     }
 }
 
@@ -101,7 +129,7 @@ mod tests {
     };
 
     #[test]
-    fn those_at_squeezed_edges_stop_and_no_others() {
+    fn those_at_squeezed_edges_move_as_the_whole_and_no_others() {
         for [columns, rows] in [[2, 2], [5, 7], [17, 33]] {
             for squeezed in 0..columns * rows {
                 for level in levels() {
@@ -121,12 +149,17 @@ mod tests {
                         inv_mass: Shared::new(&mut inv_mass),
                         normal: None,
                     };
-                    stop(level, sheet, SharedPoints::new(&mut previous), Vec2::ONE);
+                    let whole = RigidMotion {
+                        displacement: Vec3::Y,
+                        ..RigidMotion::default()
+                    };
+                    let previous_points = SharedPoints::new(&mut previous);
+                    stop(level, sheet, previous_points, Vec2::ONE, whole);
                     for i in 0..columns * rows {
                         let right = squeezed % columns + 1 < columns;
                         let ends = [squeezed, squeezed + 1];
                         let stops = right && ends.contains(&i) && i != 0;
-                        let velocity = if stops { Vec3::ZERO } else { Vec3::Z };
+                        let velocity = if stops { Vec3::Y } else { Vec3::Z };
                         let is = position.get(i) - previous.get(i);
                         assert!(
                             is.distance(velocity) < 1e-6,

@@ -120,13 +120,8 @@ impl Motion<'_> {
     /// The velocities of a row, rigid motion apart, times the length of the substep.
     #[inline(always)]
     fn velocities<S: Simd>(self, simd: S, r: usize, row: Row) {
-        let RigidMotion {
-            center,
-            displacement,
-            rotation,
-        } = self.rigid;
-        let at_origin: V3<S> = V3::splat(simd, displacement - rotation.cross(center));
-        let rotation = V3::splat(simd, rotation);
+        let at_origin: V3<S> = V3::splat(simd, self.rigid.at_origin());
+        let rotation = V3::splat(simd, self.rigid.rotation);
         let first = r * self.sheet.columns;
         each_window(
             simd,
