@@ -120,7 +120,7 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
     particles.substep_seconds = seconds;
 }
 
-/// Lets what is wound up in itself come to rest, after the last substep: see [`ClothSolver::Chains`].
+/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
 pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
     for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {

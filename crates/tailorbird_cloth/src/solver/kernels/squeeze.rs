@@ -2,7 +2,7 @@
 //!
 //! Nothing ordinary squeezes an edge that far: cloth buckles first. It happens where a sheet is wound up in itself, after pins that
 //! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; with the motion
-//! of the whole in place of its own it comes to rest, and mostly undoes itself.
+//! of the whole in place of its own it mostly comes to rest, and often undoes itself.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
