@@ -259,7 +259,7 @@ mod tests {
     use super::*;
 
     fn pool() {
-        ComputeTaskPool::get_or_init(|| TaskPool::new());
+        ComputeTaskPool::get_or_init(TaskPool::new);
     }
 
     #[test]

@@ -4,8 +4,6 @@
 //! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; with the motion
 //! of the whole in place of its own it mostly comes to rest, and often undoes itself.
 
-#![expect(clippy::doc_markdown, reason = "formulas")]
-
 use bevy_math::Vec2;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
@@ -63,7 +61,7 @@ fn stop_with<S: Simd>(
                     [first, first + 1],
                     least.x,
                     whole,
-                )
+                );
             },
         );
         if row + 1 < sheet.rows {
@@ -80,7 +78,7 @@ fn stop_with<S: Simd>(
                         [first, first + columns],
                         least.y,
                         whole,
-                    )
+                    );
                 },
             );
         }
