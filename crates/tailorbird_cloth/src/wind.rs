@@ -47,7 +47,7 @@ pub struct Gusts {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 pub enum WindModel {
     /// Drag and lift of a flat plate in the air that flows past it, `½ ρ A |u|² …`, with the coefficients of
-    /// [`ClothMaterial`]. Takes the motion of the cloth into account: it cannot get faster than the wind.
+    /// [`ClothMaterial`](crate::material::ClothMaterial). Takes the motion of the cloth into account: it cannot get faster than the wind.
     #[default]
     Aerodynamic,
     /// The classic force along the wind, `ŵ |w · n| A` with `n` the unit normal and 1 N s/m³, whatever the cloth's own
