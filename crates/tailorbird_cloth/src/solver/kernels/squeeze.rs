@@ -48,37 +48,15 @@ fn stop_with<S: Simd>(
     let least = spacing * spacing * LEAST;
     for row in 0..sheet.rows {
         let first = row * columns;
-        each_window(
-            simd,
-            0..columns - 1,
-            #[inline(always)]
-            |window| {
-                stop_ends(
-                    simd,
-                    sheet,
-                    previous,
-                    window,
-                    [first, first + 1],
-                    least.x,
-                    whole,
-                );
-            },
-        );
-        if row + 1 < sheet.rows {
+        let below = if row + 1 < sheet.rows { columns } else { 0 };
+        for (count, to, least) in [(columns - 1, 1, least.x), (below, columns, least.y)] {
             each_window(
                 simd,
-                0..columns,
+                0..count,
                 #[inline(always)]
                 |window| {
-                    stop_ends(
-                        simd,
-                        sheet,
-                        previous,
-                        window,
-                        [first, first + columns],
-                        least.y,
-                        whole,
-                    );
+                    let ends = [first, first + to];
+                    stop_ends(simd, sheet, previous, window, ends, least, whole);
                 },
             );
         }
