@@ -234,3 +234,20 @@ fn wrong_settings_are_reported_and_nobody_sleeps_by_them() {
         assert!(!is_asleep(&sheet), "{speed}");
     }
 }
+
+#[test]
+fn what_trembles_in_its_creases_falls_asleep() {
+    for n in [48, 64, 96, 128] {
+        let mut sheet = Sheet::new(&Scene {
+            sleep: ClothSleep::default(),
+            ..Scene::drape(UVec2::splat(n))
+        });
+        let mut steps = 0;
+        while !is_asleep(&sheet) {
+            sheet.step();
+            steps += 1;
+            assert!(steps < 1200, "{n}: still awake after 20 s");
+        }
+        println!("{n}: {} s", steps as f32 / 60.0);
+    }
+}
