@@ -10,7 +10,7 @@ use bevy_transform::{components::Transform, helper::TransformHelper};
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
-    frame::split,
+    frame::{shortest, split},
     particles::ClothParticles,
     solver::{
         ClothSolver,
@@ -120,16 +120,6 @@ struct MovingCollider {
     end: Isometry3d,
 }
 
-impl MovingCollider {
-    /// Where its centre is at a part of the step, in the world \[m\].
-    fn center(&self, fraction: f32) -> Vec3 {
-        self.start
-            .translation
-            .lerp(self.end.translation, fraction)
-            .into()
-    }
-}
-
 impl ClothColliders {
     /// The number of colliders.
     pub fn len(&self) -> usize {
@@ -183,7 +173,7 @@ pub fn snapshot_colliders(
             .0
             .filter(|start| {
                 let moved = start.translation.distance(end.translation);
-                moved <= ClothCollider::TELEPORT_SPEED * step.seconds()
+                moved <= ClothCollider::TELEPORT_SPEED * step.world_seconds()
             })
             .unwrap_or(end);
         pose.0 = Some(end);
@@ -281,11 +271,10 @@ impl MovingCollider {
     /// Keeps the particles of one cloth out.
     fn collide(&self, phase: Phase, substep: &Substep, cloth: &mut ClothStagesItem) {
         let (frame, material) = (&*cloth.frame, cloth.material);
-        let (from, to) = substep.fractions();
-        let (center_from, center_to) = (
-            frame.to_frame(self.center(from)),
-            frame.to_frame(self.center(to)),
-        );
+        let start = frame.start_of(self.start, self.end);
+        let fractions = substep.fractions();
+        let (from, to) = (start.translation.into(), self.end.translation.into());
+        let [center_from, center_to] = frame.way_to_frame(from, to, fractions);
         let friction = combined_friction(self.friction, material.friction);
         let ClothParticles {
             position,
@@ -312,11 +301,12 @@ impl MovingCollider {
         let held = grabbed.map(|held| held.particle as usize);
         let any = match self.shape {
             ColliderShape::Sphere { radius } => {
-                let turned = self.end.rotation * self.start.rotation.inverse();
+                let turned = shortest(self.end.rotation * start.rotation.inverse());
                 let sphere = MovingSphere {
                     from: center_from,
                     to: center_to,
-                    rotation: frame.vector_to_frame(turned.to_scaled_axis() / substep.count as f32),
+                    rotation: frame.vector_to_frame(turned.to_scaled_axis() / substep.count as f32)
+                        - frame.carried_turn(),
                     radius: radius + material.margin(),
                     friction,
                 };
@@ -329,7 +319,7 @@ impl MovingCollider {
                 any
             }
             ColliderShape::HalfSpace => {
-                let rotation = self.start.rotation.slerp(self.end.rotation, to);
+                let rotation = start.rotation.slerp(self.end.rotation, fractions.1);
                 let plane = MovingHalfSpace {
                     from: center_from,
                     to: center_to,

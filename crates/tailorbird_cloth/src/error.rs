@@ -209,6 +209,8 @@ pub enum ErrorSource {
     Collider,
     /// [`ClothForces`](crate::forces::ClothForces).
     Forces,
+    /// [`ClothInertia`](crate::inertia::ClothInertia).
+    Inertia,
     /// [`ClothSleep`](crate::sleep::ClothSleep).
     Sleep,
     /// [`ClothParticles`](crate::particles::ClothParticles).

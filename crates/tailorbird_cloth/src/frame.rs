@@ -8,6 +8,7 @@ use bevy_transform::{components::GlobalTransform, helper::TransformHelper};
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
+    inertia::{ClothInertia, Felt, TeleportMode},
     particles::ClothParticles,
     solver::kernels::rigid,
     stages::{ClothStages, ClothStagesItem, Substep},
@@ -29,8 +30,34 @@ pub struct ClothFrame {
     pub(crate) end: Isometry3d,
     /// At the end of the substep in progress: what the particles' coordinates refer to.
     pub(crate) current: Isometry3d,
+    /// From `start` to `current` \[m\]: exact where coordinates of the world are not.
+    offset: Vec3,
     pub(crate) scale: Vec3,
     pub(crate) placed: bool,
+    /// The last valid one.
+    inertia: ClothInertia,
+    /// How much of the motion of this step is felt.
+    #[reflect(ignore)]
+    felt: Felt,
+    /// From where the last substep began to where the frame is now, as the particles were taken.
+    #[reflect(ignore)]
+    taken: Option<Taken>,
+    /// How far the entity was put elsewhere in this step.
+    #[reflect(ignore)]
+    jump: Option<Isometry3d>,
+    asked: Option<TeleportMode>,
+    teleported: Option<TeleportMode>,
+}
+
+/// How what does not follow the frame by itself came from the frame as it was into the frame as it is.
+#[derive(Clone, Copy, Debug)]
+struct Taken {
+    /// How the frame was turned, and how far from where the step began.
+    from: (Quat, Vec3),
+    rotation: Mat3,
+    shift: Vec3,
+    /// What is not felt of the turn, in the frame's axes \[rad\].
+    carried: Vec3,
 }
 
 impl Default for ClothFrame {
@@ -39,8 +66,15 @@ impl Default for ClothFrame {
             start: Isometry3d::IDENTITY,
             end: Isometry3d::IDENTITY,
             current: Isometry3d::IDENTITY,
+            offset: Vec3::ZERO,
             scale: Vec3::ONE,
             placed: false,
+            inertia: ClothInertia::default(),
+            felt: Felt::default(),
+            taken: None,
+            jump: None,
+            asked: None,
+            teleported: None,
         }
     }
 }
@@ -63,7 +97,8 @@ impl ClothFrame {
 
     /// A point of the world in the frame \[m\].
     pub fn to_frame(&self, point: Vec3) -> Vec3 {
-        self.current.rotation.inverse() * (point - Vec3::from(self.current.translation))
+        let offset = point - Vec3::from(self.start.translation) - self.offset;
+        self.current.rotation.inverse() * offset
     }
 
     /// A point of the world in the frame at the end of the step \[m\].
@@ -81,6 +116,54 @@ impl ClothFrame {
         self.current.rotation.inverse() * vector
     }
 
+    /// The entity is put elsewhere, and its cloth with it: whatever way the entity goes until the next step, the cloth does not
+    /// feel it. [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done.
+    pub fn teleport(&mut self, mode: TeleportMode) {
+        self.asked = Some(mode);
+    }
+
+    /// What became of the cloth, where it was put elsewhere in this step.
+    pub(crate) fn take_teleport(&mut self) -> Option<TeleportMode> {
+        self.teleported.take()
+    }
+
+    /// Where something that goes from `start` to `end` in this step begins for a cloth that was put elsewhere with its entity:
+    /// what was put elsewhere with it was as near to it before.
+    pub(crate) fn start_of(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
+        let Some(jump) = self.jump else {
+            return start;
+        };
+        let taken_along = jump * start;
+        let far = |at: Isometry3d| at.translation.distance_squared(end.translation);
+        if far(taken_along) < far(start) {
+            taken_along
+        } else {
+            start
+        }
+    }
+
+    /// By how much the cloth is turned in a substep without feeling it, in the frame's axes \[rad\].
+    pub(crate) fn carried_turn(&self) -> Vec3 {
+        self.taken.map_or(Vec3::ZERO, |taken| taken.carried)
+    }
+
+    /// The way of a point during a substep, in the frame as it is \[m\], of a point that goes through the world from `start` to
+    /// `end` in this step. It begins as far from the particles as it then was.
+    pub(crate) fn way_to_frame(&self, start: Vec3, end: Vec3, fractions: (f32, f32)) -> [Vec3; 2] {
+        // Differences first: they are exact where coordinates are large.
+        let first = start - Vec3::from(self.start.translation);
+        let [from, to] = [fractions.0, fractions.1].map(|f| first + f * (end - start));
+        let to_frame = |point: Vec3| self.current.rotation.inverse() * (point - self.offset);
+        let begin = match &self.taken {
+            Some(taken) => {
+                let (rotation, offset) = taken.from;
+                taken.rotation * (rotation.inverse() * (from - offset)) + taken.shift
+            }
+            None => to_frame(from),
+        };
+        [begin, to_frame(to)]
+    }
+
     /// Whether the frame moves during this step.
     pub fn is_moving(&self) -> bool {
         self.start != self.end
@@ -95,14 +178,39 @@ impl ClothFrame {
         }
     }
 
-    fn place(&mut self, to: Isometry3d) {
+    /// Goes to a place within a step of this length \[s\], for the world and for the cloth.
+    fn place(&mut self, to: Isometry3d, [world_seconds, seconds]: [f32; 2]) {
+        let inertia = self.inertia;
         self.start = self.end;
         self.end = to;
+        self.jump = None;
+        self.taken = None;
         if !self.placed {
             self.start = to;
             self.placed = true;
         }
+        let far = self.start != to && inertia.is_teleport(self.start, to, world_seconds);
+        let mode = self
+            .asked
+            .take()
+            .or_else(|| far.then_some(inertia.teleport));
+        if mode.is_some() {
+            self.teleported = mode;
+            self.jump = Some(to * self.start.inverse());
+            self.start = to;
+        }
+        self.felt = inertia.felt(self.start, to, world_seconds, seconds);
         self.current = self.start;
+        self.offset = Vec3::ZERO;
+    }
+}
+
+/// The same rotation by no more than π.
+pub(crate) fn shortest(rotation: Quat) -> Quat {
+    if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
     }
 }
 
@@ -125,24 +233,38 @@ pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Vec3), C
 ///
 /// A transform that is not finite is reported, and the frame stays where it was.
 pub fn prepare_frames(
+    step: Res<ClothStep>,
     helper: TransformHelper,
-    mut cloths: Query<(Entity, &mut ClothFrame, &mut ClothStatus), With<Cloth>>,
+    mut cloths: Query<(Entity, &mut ClothFrame, Ref<ClothInertia>, &mut ClothStatus), With<Cloth>>,
     commands: ParallelCommands,
 ) {
-    for (entity, mut frame, mut status) in &mut cloths {
+    // A pause keeps what moves meanwhile from being felt, and from being a teleport.
+    let seconds = if step.running() {
+        [step.world_seconds(), step.seconds()]
+    } else {
+        [f32::INFINITY; 2]
+    };
+    for (entity, mut frame, inertia, mut status) in &mut cloths {
+        if inertia.is_changed() {
+            let errors = inertia.errors();
+            if errors.is_empty() {
+                frame.inertia = *inertia;
+            }
+            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Inertia, errors);
+        }
         let Ok(transform) = helper.compute_global_transform(entity) else {
             continue;
         };
         let error = match split(&transform) {
             Ok((isometry, scale)) => {
                 frame.set_scale(scale);
-                frame.place(isometry);
+                frame.place(isometry, seconds);
                 None
             }
             Err(error) => {
                 let stay = frame.end;
                 if frame.placed {
-                    frame.place(stay);
+                    frame.place(stay, seconds);
                 }
                 Some(error)
             }
@@ -169,17 +291,19 @@ impl ClothFrame {
     /// Moves on by one substep.
     pub(crate) fn advance(&mut self, substep: &Substep, particles: &mut ClothParticles) {
         if !self.is_moving() {
+            self.taken = None;
             particles.hold_still();
             return;
         }
-        let to = if substep.left() == 1 {
-            self.end
+        let (_, fraction) = substep.fractions();
+        let way = Vec3::from(self.end.translation - self.start.translation);
+        let (offset, to) = if substep.left() == 1 {
+            (way, self.end)
         } else {
-            let (_, fraction) = substep.fractions();
-            Isometry3d::new(
-                self.start.translation.lerp(self.end.translation, fraction),
-                self.start.rotation.slerp(self.end.rotation, fraction),
-            )
+            let offset = fraction * way;
+            let place = Vec3::from(self.start.translation) + offset;
+            let rotation = self.start.rotation.slerp(self.end.rotation, fraction);
+            (offset, Isometry3d::new(place, rotation))
         };
         let ClothParticles {
             position,
@@ -189,14 +313,32 @@ impl ClothFrame {
             inv_mass,
             ..
         } = particles;
-        let from = self.current;
-        self.current = to;
+        let from = (self.current.rotation, self.offset);
+        (self.current, self.offset) = (to, offset);
         let inverse: Quat = to.rotation.inverse();
-        // The difference of the translations first: it is small even where they are large.
-        let shift = inverse * Vec3::from(from.translation - to.translation);
-        let rotation = Mat3::from_quat(inverse * from.rotation);
+        let shift = inverse * (from.1 - offset);
+        let turn = inverse * from.0;
+        let rotation = Mat3::from_quat(turn);
+        rigid::rotate(rotation, acceleration);
+        let (rotation, shift) = if self.felt.is_all() {
+            (rotation, shift)
+        } else {
+            // The frame turns the other way than what is expressed in it.
+            let whole = -shortest(turn).to_scaled_axis();
+            let taken = Taken {
+                from,
+                rotation: Mat3::from_quat(Quat::IDENTITY.slerp(turn, self.felt.angular)),
+                shift: self.felt.linear * shift,
+                carried: (1.0 - self.felt.angular) * whole,
+            };
+            self.taken = Some(taken);
+            (taken.rotation, taken.shift)
+        };
         rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
         rigid::rotate(rotation, lost_displacement);
-        rigid::rotate(rotation, acceleration);
+        if self.felt.spin != Vec3::ZERO {
+            let turned = inverse * self.felt.spin * substep.seconds;
+            rigid::fling(turned, inv_mass, position);
+        }
     }
 }

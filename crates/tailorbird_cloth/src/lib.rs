@@ -32,6 +32,7 @@ pub mod error;
 pub mod forces;
 pub mod frame;
 pub mod grab;
+pub mod inertia;
 pub mod material;
 mod memory;
 pub mod normals;
@@ -64,6 +65,7 @@ pub mod prelude {
         forces::ClothForces,
         frame::ClothFrame,
         grab::ClothGrab,
+        inertia::{ClothInertia, ClothTeleported, TeleportMode},
         material::ClothMaterial,
         normals::{ClothNormals, ClothShading},
         particles::ClothParticles,

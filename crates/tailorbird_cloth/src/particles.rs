@@ -286,4 +286,19 @@ impl ClothParticles {
         self.lost_displacement.fill(Vec3::ZERO);
         self.acceleration.clear();
     }
+
+    /// Puts the particles where they are at rest, pinned ones where they are held, without velocity.
+    pub(crate) fn reset_to_rest(&mut self, topology: &Topology) {
+        if self.len() != topology.particles() {
+            return;
+        }
+        for (i, place) in topology.rest_positions.iter().enumerate() {
+            self.position.set(i, *place);
+        }
+        for held in &self.pins {
+            self.position.set(held.particle as usize, held.target);
+        }
+        self.begin_step();
+        self.reset_to_step_start();
+    }
 }

@@ -20,6 +20,7 @@ use crate::{
     forces::apply_forces,
     frame::{advance_frames, prepare_frames},
     grab::apply_grab,
+    inertia::reset_teleported,
     normals::recompute_normals,
     pins::apply_pins,
     prelude::*,
@@ -99,6 +100,7 @@ impl Plugin for ClothPlugin {
                 prepare_frames,
                 build_topology,
                 apply_pins,
+                reset_teleported,
                 build_tethers,
                 plan_substeps,
                 (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
@@ -194,6 +196,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
         .register_type::<ClothSolver>()
+        .register_type::<ClothInertia>()
         .register_type::<ClothSleep>()
         .register_type::<ClothRest>()
         .register_type::<crate::tethers::ClothTethers>()

@@ -22,6 +22,12 @@ pub struct ClothSettings {
     pub iterations: u32,
     /// The instructions that the kernels use. The result has the same bits with any.
     pub instruction_set: InstructionSet,
+    /// How fast time passes for cloth, compared with the clock of its schedule, 0 to 10 [-]. 0 is a pause. Beyond 1 a step has
+    /// that many times as many substeps, where their number is not set.
+    ///
+    /// For cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
+    /// everything.
+    pub time_scale: f32,
     /// Stops the simulation. Cloths stay as they are.
     pub paused: bool,
     /// While paused: how many steps to do all the same. Counts down.
@@ -76,6 +82,7 @@ impl Default for ClothSettings {
             substeps: None,
             iterations: 1,
             instruction_set: InstructionSet::Auto,
+            time_scale: 1.0,
             paused: false,
             pending_steps: 0,
         }
@@ -90,6 +97,9 @@ impl ClothSettings {
 
     /// The largest number of substeps and of iterations.
     pub const MOST_PASSES: u32 = 1000;
+
+    /// The largest time scale [-].
+    pub const LARGEST_TIME_SCALE: f32 = 10.0;
 
     /// What is wrong with these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
@@ -107,6 +117,12 @@ impl ClothSettings {
                 self.iterations as f32,
                 |v| v <= most,
                 "0 to 1000",
+            ),
+            ClothErrorKind::number(
+                "ClothSettings.time_scale",
+                self.time_scale,
+                |v| (0.0..=Self::LARGEST_TIME_SCALE).contains(&v),
+                "0 to 10 [-]",
             ),
         ]
         .into_iter()

@@ -26,6 +26,8 @@ use crate::{
 #[reflect(Resource, Default)]
 pub struct ClothStep {
     pub(crate) seconds: f32,
+    pub(crate) world_seconds: f32,
+    pub(crate) time_scale: f32,
     pub(crate) substeps: u32,
     pub(crate) fixed_substeps: Option<u32>,
     pub(crate) substep: u32,
@@ -59,6 +61,12 @@ impl ClothStep {
     /// The length of the step \[s\].
     pub fn seconds(&self) -> f32 {
         self.seconds
+    }
+
+    /// How much time passes meanwhile for everything else \[s\]: see
+    /// [`ClothSettings::time_scale`](crate::settings::ClothSettings::time_scale).
+    pub fn world_seconds(&self) -> f32 {
+        self.world_seconds
     }
 
     /// The length of a substep \[s\].
@@ -125,7 +133,8 @@ impl ClothStep {
     /// How many substeps this cloth takes where it need not keep step with others.
     pub(crate) fn substeps_of(&self, solver: ClothSolver, topology: &Topology) -> u32 {
         let wanted = self.fixed_substeps;
-        wanted.unwrap_or_else(|| solver.substeps(topology)).max(1)
+        let automatic = || solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
+        wanted.unwrap_or_else(automatic).max(1)
     }
 
     /// The substep `index` of `count`.
@@ -188,7 +197,9 @@ pub fn begin_step(
     if step.running {
         step.elapsed += f64::from(step.seconds);
     }
-    step.seconds = time.delta_secs();
+    step.world_seconds = time.delta_secs();
+    step.time_scale = valid.time_scale;
+    step.seconds = valid.time_scale * step.world_seconds;
     step.substep = 0;
     step.fixed_substeps = valid.substeps;
     step.level = SimdLevel(valid.instruction_set.level());

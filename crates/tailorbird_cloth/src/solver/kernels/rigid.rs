@@ -32,3 +32,14 @@ pub fn rotate(rotation: Mat3, vectors: &mut Points) {
         vectors.set(i, rotation * vectors.get(i));
     }
 }
+
+/// Adds the displacement of a substep by centrifugal acceleration about the origin: −φ × (φ × x), with the angle φ of the
+/// substep, about its axis \[rad\].
+pub fn fling(turned: Vec3, inv_mass: &[f32], position: &mut Points) {
+    for (i, w) in inv_mass.iter().enumerate() {
+        if *w > 0.0 {
+            let place = position.get(i);
+            position.set(i, place - turned.cross(turned.cross(place)));
+        }
+    }
+}

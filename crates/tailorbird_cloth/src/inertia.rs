@@ -1,0 +1,252 @@
+//! How much of its entity's motion a cloth feels.
+//!
+//! Pins move with the entity, and free particles keep their place in the world: that is physics, and the default. A cape on
+//! a character that sprints, snaps round and is moved by its game as no body moves looks better with less of it. What a cloth
+//! does not feel carries it along, as if it and its entity stood still:
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::prelude::*;
+//! # use tailorbird_cloth::prelude::*;
+//! # fn spawn(mut commands: Commands) {
+//! commands.spawn((
+//!     Cloth::grid(Vec2::new(0.8, 1.2), UVec2::new(32, 48)),
+//!     ClothPins::edges([GridEdge::Top]),
+//!     ClothInertia {
+//!         // Half of the way and of the turns, and nothing beyond a fast run.
+//!         linear: 0.5,
+//!         angular: 0.5,
+//!         max_speed: 8.0,
+//!         ..ClothInertia::default()
+//!     },
+//! ));
+//! # }
+//! ```
+//!
+//! An entity that is put elsewhere takes its cloth along: where it moves faster than a threshold, or where the game says so.
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::prelude::*;
+//! # use bevy_transform::prelude::*;
+//! # use tailorbird_cloth::prelude::*;
+//! fn respawn(mut capes: Query<(&mut Transform, &mut ClothFrame)>) {
+//!     for (mut transform, mut frame) in &mut capes {
+//!         transform.translation = Vec3::ZERO;
+//!         frame.teleport(TeleportMode::Reset);
+//!     }
+//! }
+//! ```
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_reflect::prelude::*;
+
+use crate::{
+    cloth::Cloth,
+    error::ClothErrorKind,
+    frame::{ClothFrame, shortest},
+    particles::ClothParticles,
+    sleep::ClothRest,
+    topology::ClothTopology,
+};
+
+/// How much of its entity's motion a cloth feels, and what counts as a teleport. Change it at any time.
+///
+/// What is not felt carries the cloth along without giving it velocity; wind and colliders then act on it as they would if the
+/// entity stood still.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothInertia {
+    /// Part of the entity's way that is felt, 0 to 1 [-]. 0 is a cloth that does not notice that its entity moves.
+    pub linear: f32,
+    /// Part of the entity's turning that is felt, 0 to 1 [-].
+    pub angular: f32,
+    /// Part of the centrifugal acceleration of the turning that is *not* felt that acts all the same [-], so that a skirt
+    /// rises in a turn that carries it along. At least 0; 1 is physics.
+    pub centrifugal: f32,
+    /// What the entity moves faster than this [m/s] is not felt.
+    pub max_speed: f32,
+    /// What the entity turns faster than this [rad/s] is not felt.
+    pub max_angular_speed: f32,
+    /// An entity that moves faster than this [m/s] within one step is taken to be put elsewhere.
+    pub teleport_speed: f32,
+    /// An entity that turns by more than this in one step \[rad\] is taken to be put elsewhere. No turn is larger than π.
+    pub teleport_angle: f32,
+    /// What happens to the cloth where it is.
+    pub teleport: TeleportMode,
+}
+
+/// What becomes of a cloth whose entity is put elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum TeleportMode {
+    /// It is carried along as it is, and what velocity it has turns with it.
+    #[default]
+    KeepShape,
+    /// It is put into its rest shape, without velocity; pins hold where they hold.
+    Reset,
+}
+
+/// A cloth was put elsewhere with its entity: because its [`ClothInertia`] says so of a motion like that, or by
+/// [`ClothFrame::teleport`].
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub struct ClothTeleported {
+    /// The cloth.
+    pub entity: Entity,
+    /// What became of it.
+    pub mode: TeleportMode,
+}
+
+impl Default for ClothInertia {
+    /// All of the motion, without limits, up to 200 m/s.
+    fn default() -> Self {
+        Self {
+            linear: 1.0,
+            angular: 1.0,
+            centrifugal: 1.0,
+            max_speed: f32::INFINITY,
+            max_angular_speed: f32::INFINITY,
+            teleport_speed: 200.0,
+            teleport_angle: f32::INFINITY,
+            teleport: TeleportMode::KeepShape,
+        }
+    }
+}
+
+impl ClothInertia {
+    /// A cloth that does not notice that its entity moves.
+    pub fn none() -> Self {
+        Self {
+            linear: 0.0,
+            angular: 0.0,
+            centrifugal: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// What is wrong with these values.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let part = |field: &str, value| {
+            let field = format!("ClothInertia.{field}");
+            ClothErrorKind::number(&field, value, |v| (0.0..=1.0).contains(&v), "0 to 1 [-]")
+        };
+        let limit = |field: &str, value, unit| {
+            let field = format!("ClothInertia.{field}");
+            // Infinity is no limit.
+            ClothErrorKind::number(&field, value, |v| v >= 0.0, unit)
+        };
+        [
+            part("linear", self.linear),
+            part("angular", self.angular),
+            ClothErrorKind::number(
+                "ClothInertia.centrifugal",
+                self.centrifugal,
+                |v| v >= 0.0 && v.is_finite(),
+                "at least 0 and finite [-]",
+            ),
+            limit("max_speed", self.max_speed, "at least 0 [m/s]"),
+            limit(
+                "max_angular_speed",
+                self.max_angular_speed,
+                "at least 0 [rad/s]",
+            ),
+            limit("teleport_speed", self.teleport_speed, "at least 0 [m/s]"),
+            limit("teleport_angle", self.teleport_angle, "at least 0 [rad]"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Whether an entity that goes from one place to another in a step of this length \[s\] is put elsewhere.
+    pub(crate) fn is_teleport(&self, from: Isometry3d, to: Isometry3d, seconds: f32) -> bool {
+        let way = from.translation.distance(to.translation);
+        way > self.teleport_speed * seconds
+            || from.rotation.angle_between(to.rotation) > self.teleport_angle
+    }
+
+    /// How much of a motion in a step of this length \[s\], for the world and for the cloth, is felt.
+    pub(crate) fn felt(
+        &self,
+        from: Isometry3d,
+        to: Isometry3d,
+        world_seconds: f32,
+        seconds: f32,
+    ) -> Felt {
+        let part = |felt: f32, moved: f32, most: f32| {
+            if moved * felt > most * world_seconds {
+                most * world_seconds / moved
+            } else {
+                felt
+            }
+        };
+        let way = from.translation.distance(to.translation);
+        let axis = shortest(to.rotation * from.rotation.inverse()).to_scaled_axis();
+        let angular = part(self.angular, axis.length(), self.max_angular_speed);
+        let carried = if seconds > 0.0 {
+            (1.0 - angular) / seconds * axis
+        } else {
+            Vec3::ZERO
+        };
+        Felt {
+            linear: part(self.linear, way, self.max_speed),
+            angular,
+            spin: self.centrifugal.sqrt() * carried,
+        }
+    }
+}
+
+/// How much of the motion of a step is felt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Felt {
+    /// Of the way [-].
+    pub linear: f32,
+    /// Of the turn [-].
+    pub angular: f32,
+    /// The angular velocity, in world axes, whose centrifugal acceleration acts beside that [rad/s].
+    pub spin: Vec3,
+}
+
+impl Default for Felt {
+    fn default() -> Self {
+        Self {
+            linear: 1.0,
+            angular: 1.0,
+            spin: Vec3::ZERO,
+        }
+    }
+}
+
+impl Felt {
+    /// Whether it is the whole motion.
+    pub fn is_all(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Puts cloths that were teleported with [`TeleportMode::Reset`] into their rest shape.
+pub fn reset_teleported(
+    mut cloths: Query<
+        (
+            Entity,
+            &mut ClothFrame,
+            &ClothTopology,
+            &mut ClothParticles,
+            &mut ClothRest,
+        ),
+        With<Cloth>,
+    >,
+    mut commands: Commands,
+) {
+    for (entity, mut frame, topology, mut particles, mut rest) in &mut cloths {
+        let Some(mode) = frame.bypass_change_detection().take_teleport() else {
+            continue;
+        };
+        if mode == TeleportMode::Reset {
+            particles.reset_to_rest(topology);
+            rest.wake();
+        }
+        commands.trigger(ClothTeleported { entity, mode });
+    }
+}
