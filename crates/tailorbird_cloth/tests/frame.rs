@@ -416,7 +416,7 @@ fn wrong_values_are_reported_and_the_last_valid_ones_stay() {
         ("ClothInertia.max_speed", |i| i.max_speed = f32::NAN),
         ("ClothInertia.teleport_speed", |i| i.teleport_speed = -1.0),
         ("ClothInertia.teleport_angle", |i| {
-            i.teleport_angle = f32::NAN
+            i.teleport_angle = f32::NAN;
         }),
     ];
     for (field, change) in wrong {
