@@ -6,6 +6,7 @@ use bevy_reflect::prelude::*;
 use bevy_transform::prelude::Transform;
 
 use crate::{
+    attachment::AttachedParticles,
     bounds::ClothBounds,
     error::{ClothErrorKind, ClothStatus},
     forces::ClothForces,
@@ -40,6 +41,7 @@ use crate::{
     ClothSleep,
     ClothRest,
     ClothTethers,
+    AttachedParticles,
     ClothTopology,
     ClothFrame,
     ClothParticles,

@@ -158,6 +158,28 @@ pub enum ClothErrorKind {
         /// What was selected.
         value: String,
     },
+    /// A list has the wrong number of entries.
+    #[error("{field} has {value} entries, must have {allowed}")]
+    Count {
+        /// The type and field.
+        field: String,
+        /// How many it has.
+        value: usize,
+        /// How many are allowed.
+        allowed: String,
+    },
+    /// An attachment belongs to no cloth, or is held by nobody.
+    #[error("ClothAttachment has no {missing}, must have one: nothing is held")]
+    Unrelated {
+        /// The component that is not there.
+        missing: String,
+    },
+    /// What holds an attachment, or one of its parents, is nowhere.
+    #[error("AttachedTo names {value}, which has no Transform, must have one")]
+    NoTransform {
+        /// The entity without.
+        value: Entity,
+    },
     /// The state of the cloth became infinite or NaN and was reset.
     #[error(
         "ClothParticles became non-finite at particle {particle}, positions must be finite: reset to the last finite state"
@@ -183,6 +205,13 @@ impl ClothErrorKind {
         })
     }
 
+    /// An error about an attachment without this relationship.
+    pub(crate) fn unrelated(missing: &str) -> Self {
+        Self::Unrelated {
+            missing: missing.into(),
+        }
+    }
+
     /// An error about a vector that is not finite.
     pub(crate) fn vector(field: &str, value: Vec3) -> Option<Self> {
         (!value.is_finite()).then(|| Self::Vector {
@@ -203,6 +232,12 @@ pub enum ErrorSource {
     Pins,
     /// [`ClothGrab`](crate::grab::ClothGrab).
     Grab,
+    /// [`ClothAttachment`](crate::attachment::ClothAttachment).
+    Attachment,
+    /// [`ClothMotionConstraints`](crate::motion::ClothMotionConstraints).
+    Motion,
+    /// [`ClothMotionTargets`](crate::motion::ClothMotionTargets).
+    MotionTargets,
     /// The entity's place in the world.
     Transform,
     /// [`ClothCollider`](crate::collider::ClothCollider).

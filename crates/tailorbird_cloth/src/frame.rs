@@ -279,11 +279,12 @@ pub fn prepare_frames(
     }
 }
 
-/// Moves the frames on by one substep, and expresses the free particles in the moved frame.
+/// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
+/// target.
 pub fn advance_frames(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
     for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
-        cloth.frame.advance(&substep, &mut cloth.particles);
+        cloth.advance(&substep);
     });
 }
 

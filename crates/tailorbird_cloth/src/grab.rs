@@ -135,7 +135,7 @@ pub fn apply_grab(
                     .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
                 particles.pulled.clear();
                 particles.grabbed = None;
-                if !particles.is_pinned(hand.particle as usize) {
+                if !particles.is_held(hand.particle as usize) {
                     particles.grabbed = Some(Held {
                         particle: order.stored(hand.particle),
                         // Where the frame will be when the hand is reached.

@@ -22,12 +22,14 @@
 //!
 //! Units are metres, kilograms and seconds. World axes are Bevy's: right-handed, y up.
 
+pub mod attachment;
 pub mod bounds;
 pub mod build;
 pub mod cloth;
 pub mod collider;
 mod crew;
 pub mod diagnostics;
+pub mod drawn;
 pub mod error;
 pub mod forces;
 pub mod frame;
@@ -35,6 +37,7 @@ pub mod grab;
 pub mod inertia;
 pub mod material;
 mod memory;
+pub mod motion;
 pub mod normals;
 pub mod numbers;
 pub mod particles;
@@ -42,6 +45,7 @@ pub mod pins;
 pub mod plugin;
 pub mod points;
 pub mod query;
+pub mod reaction;
 mod runner;
 pub mod schedule;
 pub mod settings;
@@ -57,6 +61,10 @@ pub mod wind;
 /// The types that most users of the crate name.
 pub mod prelude {
     pub use crate::{
+        attachment::{
+            AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf, AttachmentOffset,
+            Attachments, BreakReason, ClothAttachment, ClothAttachments,
+        },
         bounds::ClothBounds,
         cloth::{Cloth, ClothShape},
         collider::{ClothCollider, ColliderShape},
@@ -67,11 +75,13 @@ pub mod prelude {
         grab::ClothGrab,
         inertia::{ClothInertia, ClothTeleported, TeleportMode},
         material::ClothMaterial,
+        motion::{ClothMotionConstraints, ClothMotionTargets, PerParticle, TargetSpace},
         normals::{ClothNormals, ClothShading},
         particles::ClothParticles,
         pins::{ClothPin, ClothPins, GridCorner, GridEdge, PinAuthor, PinSelection},
         plugin::ClothPlugin,
         query::ClothHit,
+        reaction::ClothPinForces,
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
         sleep::{ClothRest, ClothSleep},

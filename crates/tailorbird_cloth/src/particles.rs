@@ -58,6 +58,12 @@ pub struct ClothParticles {
     /// Pinned particles, by the number that was given to them.
     #[reflect(ignore)]
     pub(crate) pins: Vec<Held>,
+    /// Particles that attachments hold rigidly, in storage order.
+    #[reflect(ignore)]
+    pub(crate) attached: Vec<u32>,
+    /// Particles that motion constraints hold at their targets, in storage order.
+    #[reflect(ignore)]
+    pub(crate) limited: Vec<u32>,
     /// The particle that is moved by a grab, and where to \[m\].
     #[reflect(ignore)]
     pub(crate) grabbed: Option<Held>,
@@ -132,6 +138,8 @@ impl ClothParticles {
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.pins)
             + heap(&self.pulled)
+            + heap(&self.attached)
+            + heap(&self.limited)
     }
 
     /// Whether there are none: the cloth is not built yet, or its shape is invalid.
@@ -225,6 +233,14 @@ impl ClothParticles {
             .is_ok()
     }
 
+    /// Whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
+    pub fn is_held(&self, i: usize) -> bool {
+        self.is_pinned(i) || {
+            let stored = self.order.stored(i as u32);
+            self.attached.contains(&stored) || self.limited.contains(&stored)
+        }
+    }
+
     /// The pinned particles, in order.
     pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         let given = |pin: &Held| self.order.given(pin.particle) as usize;
@@ -237,7 +253,7 @@ impl ClothParticles {
         self.grabbed.map(given)
     }
 
-    /// Gives every particle its share of the mass; pinned and grabbed ones become kinematic.
+    /// Gives every particle its share of the mass; those that are held become kinematic.
     pub(crate) fn set_masses(&mut self, areas: impl Iterator<Item = f32>, areal_density: f32) {
         self.areal_density = areal_density;
         for (mass, area) in self.mass.iter_mut().zip(areas) {
@@ -251,9 +267,37 @@ impl ClothParticles {
             // A vertex that no triangle uses has no mass and stays where it is.
             *inv_mass = if *mass > 0.0 { 1.0 / mass } else { 0.0 };
         }
-        for held in self.pins.iter().chain(&self.grabbed) {
-            self.inv_mass[held.particle as usize] = 0.0;
+        let Self {
+            inv_mass,
+            pins,
+            grabbed,
+            attached,
+            limited,
+            ..
+        } = self;
+        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
+        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+            if let Some(inv_mass) = inv_mass.get_mut(i as usize) {
+                *inv_mass = 0.0;
+            }
         }
+    }
+
+    /// Replaces the particles that attachments hold rigidly. Returns whether they are others.
+    pub(crate) fn attach(&mut self, held: impl Iterator<Item = u32> + Clone) -> bool {
+        let changed = !held.clone().eq(self.attached.iter().copied());
+        if changed {
+            self.attached.clear();
+            self.attached.extend(held);
+            self.update_inv_masses();
+        }
+        changed
+    }
+
+    /// Particles that are kinematic wherever they go, in storage order: what the others are tethered to.
+    pub(crate) fn anchors(&self) -> impl Iterator<Item = u32> + '_ {
+        let pins = self.pins.iter().map(|pin| pin.particle);
+        pins.chain(self.attached.iter().chain(&self.limited).copied())
     }
 
     /// The accelerations of this step, one for each particle, to add to.
@@ -268,9 +312,18 @@ impl ClothParticles {
 
     /// Kinematic particles that do not move have no velocity.
     pub(crate) fn hold_still(&mut self) {
-        for held in self.pins.iter().chain(&self.grabbed) {
-            let i = held.particle as usize;
-            self.previous_position.set(i, self.position.get(i));
+        let Self {
+            position,
+            previous_position,
+            pins,
+            grabbed,
+            attached,
+            limited,
+            ..
+        } = self;
+        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
+        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+            previous_position.set(i as usize, position.get(i as usize));
         }
     }
 

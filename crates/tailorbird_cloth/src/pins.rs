@@ -179,10 +179,19 @@ impl PinSelection {
     /// [`ClothErrorKind::ParticleOutOfRange`]; [`ClothErrorKind::NotAGrid`]; a ball whose radius is negative or not
     /// finite.
     pub fn particles(&self, topology: &Topology) -> Result<Vec<u32>, ClothErrorKind> {
+        self.select("ClothPins", topology)
+    }
+
+    /// The particles that are selected in a component of this name.
+    pub(crate) fn select(
+        &self,
+        field: &str,
+        topology: &Topology,
+    ) -> Result<Vec<u32>, ClothErrorKind> {
         let particles = topology.particles();
         let grid = || {
             topology.grid.ok_or_else(|| ClothErrorKind::NotAGrid {
-                field: "ClothPins".into(),
+                field: field.into(),
                 value: format!("{self:?}"),
             })
         };
@@ -191,7 +200,7 @@ impl PinSelection {
                 Ok(value)
             } else {
                 Err(ClothErrorKind::ParticleOutOfRange {
-                    field: "ClothPins".into(),
+                    field: field.into(),
                     value,
                     particles,
                 })
@@ -234,9 +243,9 @@ impl PinSelection {
             }
             Self::Within { center, radius } => {
                 let checks = [
-                    ClothErrorKind::vector("ClothPins.center", center),
+                    ClothErrorKind::vector(&format!("{field}.center"), center),
                     ClothErrorKind::number(
-                        "ClothPins.radius",
+                        &format!("{field}.radius"),
                         radius,
                         |r| r >= 0.0 && r.is_finite(),
                         "at least 0 and finite [m]",

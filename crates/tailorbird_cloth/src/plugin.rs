@@ -11,6 +11,7 @@ use bevy_ecs::{
 use bevy_transform::TransformSystems;
 
 use crate::{
+    attachment::{break_attachments, prepare_attachments},
     bounds::update_bounds,
     build::build_topology,
     collider::{
@@ -21,6 +22,7 @@ use crate::{
     frame::{advance_frames, prepare_frames},
     grab::apply_grab,
     inertia::reset_teleported,
+    motion::prepare_motion,
     normals::recompute_normals,
     pins::apply_pins,
     prelude::*,
@@ -101,6 +103,7 @@ impl Plugin for ClothPlugin {
                 build_topology,
                 apply_pins,
                 reset_teleported,
+                (prepare_attachments, prepare_motion).chain(),
                 build_tethers,
                 plan_substeps,
                 (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
@@ -136,6 +139,7 @@ impl Plugin for ClothPlugin {
                 )
                     .chain()
                     .run_if(not(step_is_whole)),
+                break_attachments.run_if(step_runs),
                 stop_clock,
             )
                 .chain(),
@@ -189,6 +193,18 @@ fn add_part<M>(
 
 fn register_types(app: &mut App) {
     app.register_type::<Cloth>()
+        .register_type::<ClothAttachment>()
+        .register_type::<AttachmentOf>()
+        .register_type::<ClothAttachments>()
+        .register_type::<AttachedTo>()
+        .register_type::<Attachments>()
+        .register_type::<AttachmentForce>()
+        .register_type::<crate::attachment::AttachedParticles>()
+        .register_type::<crate::attachment::AttachmentState>()
+        .register_type::<ClothMotionConstraints>()
+        .register_type::<ClothMotionTargets>()
+        .register_type::<crate::motion::MotionState>()
+        .register_type::<ClothPinForces>()
         .register_type::<ClothMaterial>()
         .register_type::<ClothPins>()
         .register_type::<ClothGrab>()

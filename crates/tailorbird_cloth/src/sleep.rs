@@ -7,6 +7,7 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
 use crate::{
+    attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
     collider::ClothColliders,
@@ -15,6 +16,7 @@ use crate::{
     frame::ClothFrame,
     grab::ClothGrab,
     material::ClothMaterial,
+    motion::MotionState,
     particles::ClothParticles,
     pins::ClothPins,
     solver::ClothSolver,
@@ -28,8 +30,9 @@ use crate::{
 /// faster than [`speed`](Self::speed), and nothing ten times as fast, in the mean of 16 particles side by side.
 ///
 /// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
-/// transform, its sleep settings, gravity, the substeps or the wind change, when a force is added, and when a collider
-/// moves, appears or disappears where it lies. [`ClothRest::wake`] wakes it by hand.
+/// transform, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
+/// moves, appears or disappears where it lies, and when what holds an attachment or a target of a motion constraint has moved by
+/// 0.1 mm. [`ClothRest::wake`] wakes it by hand.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothSleep {
@@ -174,7 +177,12 @@ pub fn wake_cloths(
                 Ref<ClothSolver>,
                 Ref<ClothTopology>,
             ),
-            (&ClothGrab, &ClothForces),
+            (
+                &ClothGrab,
+                &ClothForces,
+                &AttachedParticles,
+                Option<&MotionState>,
+            ),
             (&ClothFrame, &ClothBounds),
             &mut ClothStatus,
         ),
@@ -182,7 +190,8 @@ pub fn wake_cloths(
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut rest, settings, (grab, forces), (frame, bounds), mut status) in &mut cloths {
+    for (entity, mut rest, settings, acting, (frame, bounds), mut status) in &mut cloths {
+        let (grab, forces, attached, motion) = acting;
         let (sleep, pins, material, solver, topology) = settings;
         if sleep.is_changed() {
             let errors = sleep.errors();
@@ -193,7 +202,11 @@ pub fn wake_cloths(
             || material.is_changed()
             || solver.is_changed()
             || topology.is_changed();
-        let pulled = grab.particle().is_some() || !forces.is_empty() || frame.is_moving();
+        let pulled = grab.particle().is_some()
+            || !forces.is_empty()
+            || frame.is_moving()
+            || attached.is_disturbed()
+            || motion.is_some_and(MotionState::is_disturbed);
         let other = |asleep: Asleep| {
             asleep.around != around(&step, &wind, &colliders, frame, bounds, &material)
         };

@@ -5,14 +5,17 @@ use bevy_math::Vec3;
 use fearless_simd::Level;
 
 use crate::{
+    attachment::AttachedParticles,
     bounds::ClothBounds,
     collider::ClothColliders,
     crew::Crew,
     error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,
+    motion::MotionState,
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
+    reaction::ClothPinForces,
     sleep::{ClothRest, ClothSleep},
     solver::{self, ClothSolver},
     tethers::ClothTethers,
@@ -62,6 +65,9 @@ pub struct ClothStages {
     pub(crate) shading: &'static ClothShading,
     pub(crate) sleep: &'static ClothSleep,
     pub(crate) tethers: &'static ClothTethers,
+    pub(crate) attached: &'static mut AttachedParticles,
+    pub(crate) motion: Option<&'static MotionState>,
+    pub(crate) pin_forces: Option<&'static mut ClothPinForces>,
     pub(crate) frame: &'static mut ClothFrame,
     pub(crate) particles: &'static mut ClothParticles,
     pub(crate) normals: &'static mut ClothNormals,
@@ -73,12 +79,21 @@ pub struct ClothStages {
 impl ClothStagesItem<'_, '_> {
     /// All stages of a substep, in the order of [`ClothSubstep`](crate::schedule::ClothSubstep).
     pub(crate) fn substep(&mut self, substep: &Substep, colliders: &ClothColliders) {
-        self.frame.advance(substep, &mut self.particles);
+        self.advance(substep);
         solver::integrate(substep, self);
         colliders.approach(substep, self);
         solver::solve(substep, self);
         colliders.collide_spheres(substep, self);
         colliders.collide_half_spaces(substep, self);
         solver::calm(substep, self);
+    }
+    /// Moves the frame on by one substep, and with it what is held by others.
+    pub(crate) fn advance(&mut self, substep: &Substep) {
+        let particles = &mut *self.particles;
+        self.frame.advance(substep, particles);
+        if let Some(motion) = self.motion {
+            motion.advance(substep, particles);
+        }
+        self.attached.advance(substep, &self.frame, particles);
     }
 }

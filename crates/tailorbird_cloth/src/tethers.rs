@@ -1,4 +1,4 @@
-//! Tethers from every particle to up to four pins.
+//! Tethers from every particle to up to four pins, or other particles that are held.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -135,7 +135,8 @@ impl ClothTethers {
     }
 }
 
-/// Measures the ways to the pins anew where the pins changed.
+/// Measures the ways to the pins anew where the pins changed. Particles that are attached rigidly, or held at their targets, count
+/// as pins; those at springs do not.
 ///
 /// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line.
 pub fn build_tethers(
@@ -151,10 +152,7 @@ pub fn build_tethers(
 ) {
     for (topology, solver, particles, mut tethers) in &mut cloths {
         let wanted = *solver == ClothSolver::Chains;
-        let pins = || {
-            let pins = particles.pins.iter().map(|pin| pin.particle);
-            pins.filter(|_| wanted)
-        };
+        let pins = || particles.anchors().filter(|_| wanted);
         if tethers.revision == topology.revision && pins().eq(tethers.pins.iter().copied()) {
             continue;
         }

@@ -12,7 +12,10 @@ use std::{
 #[expect(dead_code, reason = "shared with the test `chains`")]
 mod scene;
 
+use bevy_app::FixedUpdate;
+use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
+use bevy_transform::components::Transform;
 use scene::{Scene, Sheet};
 use tailorbird_cloth::prelude::*;
 
@@ -60,6 +63,11 @@ fn cloth_adds_no_allocation_to_an_update() {
     let mut empty = Sheet::new(&Scene::default());
     empty.app.world_mut().despawn(empty.entity);
     let without = allocations(&mut empty);
+    // A schedule with a system in it allocates as well.
+    empty
+        .app
+        .add_systems(FixedUpdate, |_: Query<&mut Transform>| ());
+    let with_a_system = allocations(&mut empty);
     println!("without cloth: {without} in {STEPS} updates");
 
     let hang = Scene::hang(UVec2::splat(24));
@@ -86,4 +94,43 @@ fn cloth_adds_no_allocation_to_an_update() {
             );
         }
     }
+
+    let mut held = Sheet::new(&Scene {
+        substeps: Some(8),
+        resolution: UVec2::splat(24),
+        ..Scene::default()
+    });
+    let (cloth, world) = (held.entity, held.app.world_mut());
+    let hand = world.spawn(Transform::default()).id();
+    let edge = ClothAttachment::edge(GridEdge::Top);
+    let soft = ClothAttachment::edge(GridEdge::Left).with_compliance(0.01);
+    for attachment in [edge, soft] {
+        world.spawn((attachment.to(hand), AttachmentOf(cloth)));
+    }
+    let targets = ClothMotionTargets::in_space(TargetSpace::World);
+    let limits = ClothMotionConstraints::within(0.2).with_backstop(0.1, 1.0);
+    world
+        .entity_mut(cloth)
+        .insert((limits, targets, ClothPinForces::default()));
+    let rest = world
+        .get::<Cloth>(cloth)
+        .map(Cloth::rest_positions)
+        .unwrap_or_default();
+    let mut time = 0.0;
+    held.app.add_systems(
+        FixedUpdate,
+        move |mut targets: Single<&mut ClothMotionTargets>, mut at: Query<&mut Transform>| {
+            time += 0.01;
+            targets.set_positions(rest.iter().map(|p| *p + Vec3::Y * time));
+            if let Ok(mut at) = at.get_mut(hand) {
+                at.translation.y = time;
+            }
+        },
+    );
+    let with = allocations(&mut held);
+    println!("held: {with}");
+    assert!(
+        with < without + u64::from(STEPS),
+        "held: {with}, not {without}"
+    );
 }

@@ -136,9 +136,14 @@ pub(crate) fn calm(substep: &Substep, cloth: &mut ClothStagesItem) {
     }
 }
 
-/// Holds the constraints of one cloth.
+/// Holds the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
 pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
     let (topology, material) = (cloth.topology, cloth.material);
+    if let Some(forces) = &mut cloth.pin_forces {
+        forces.begin(substep, &cloth.particles);
+    }
+    let (attached, frame) = (&mut *cloth.attached, &*cloth.frame);
+    attached.stretch(substep, frame, &mut cloth.particles);
     match cloth.solver {
         ClothSolver::Chains => {
             for k in 0..substep.iterations {
@@ -158,10 +163,17 @@ pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
             classic::solve(substep, topology, material, &mut cloth.particles);
         }
     }
+    let springs = attached.measure(frame, &mut cloth.particles);
+    if let Some(forces) = &mut cloth.pin_forces {
+        forces.end(substep, frame, &cloth.particles, springs);
+    }
+    if let Some(motion) = cloth.motion {
+        motion.hold(substep, &mut cloth.particles);
+    }
 }
 
 /// α̃ = α/h² [1/kg] of a compliance [m/N].
-fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
+pub(crate) fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
     // What is not finite would turn into NaN in the product with a multiplier of 0.
     (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
 }

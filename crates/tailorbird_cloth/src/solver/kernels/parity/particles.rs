@@ -9,14 +9,16 @@ use super::{
         half_space::{self, MovingHalfSpace},
         lanes::{Shared, SharedPoints, levels},
         lattice::Sheet,
+        limit::{self, Backstop, Limits},
         range,
         rigid_motion::RigidMotion,
         sphere::{self, MovingSphere},
         verlet::Verlet,
         viscosity::{Beside, Motion},
     },
-    SIZES, State, blocks, same,
+    SIZES, State, blocks, noise, same,
 };
+use crate::topology::test_meshes::random;
 
 fn verlet() -> Verlet {
     Verlet {
@@ -198,4 +200,39 @@ fn bounds() {
         .map(|level| range::range(level, &points.x, (0.0, 0.0)))
         .collect();
     assert!(all.iter().all(|one| *one == all[0]));
+}
+
+#[test]
+fn limits() {
+    for size in SIZES {
+        let start = State::sheet(size);
+        let count = start.inv_mass.len();
+        let spread = |seed: u64, size: f32| -> Vec<f32> {
+            (0..count).map(|i| size * random(i, seed)).collect()
+        };
+        let (most, distance, radius) = (spread(30, 0.5), spread(31, 0.2), spread(32, 2.0));
+        let normals = [40, 43].map(|seed| noise(count, seed, 2.0));
+        for behind in [false, true] {
+            same(&start, |level, state, cuts| {
+                let targets = [&start.previous, &start.position];
+                let limits = Limits {
+                    targets,
+                    fractions: (0.25, 0.5),
+                    max_distance: &most,
+                    backstop: behind.then_some(Backstop {
+                        normals: [&normals[0], &normals[1]],
+                        distance: &distance,
+                        radius: &radius,
+                    }),
+                };
+                state.position = noise(count, 50, 3.0);
+                let position = SharedPoints::new(&mut state.position);
+                let previous = SharedPoints::new(&mut state.previous);
+                let inv_mass = Shared::new(&mut state.inv_mass);
+                for block in blocks(count, cuts) {
+                    limit::hold(level, limits, position, previous, inv_mass, block);
+                }
+            });
+        }
+    }
 }

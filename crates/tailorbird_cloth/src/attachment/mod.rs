@@ -1,0 +1,257 @@
+//! Particles that are held by another entity: a hand, a flagpole, a bone of an animated skeleton.
+//!
+//! An attachment is an entity of its own. It belongs to a cloth ([`AttachmentOf`], listed in [`ClothAttachments`]), is held by
+//! any entity that has a `Transform` ([`AttachedTo`], listed in [`Attachments`]), and says what it holds
+//! ([`ClothAttachment`]):
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::{UVec2, Vec2, Vec3};
+//! # use bevy_transform::components::Transform;
+//! # use tailorbird_cloth::prelude::*;
+//! fn spawn_flag(mut commands: Commands) {
+//!     let pole = commands.spawn(Transform::from_xyz(0.0, 2.0, 0.0)).id();
+//!     commands.spawn((
+//!         Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(48, 32)),
+//!         Transform::from_xyz(0.0, 2.0, 0.0),
+//!         related!(ClothAttachments[ClothAttachment::edge(GridEdge::Left).to(pole)]),
+//!     ));
+//! }
+//! ```
+//!
+//! The particles keep the place that they have relative to the entity when they are attached, or go to given points of it:
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::Vec3;
+//! # use tailorbird_cloth::prelude::*;
+//! fn clip_on(mut commands: Commands, cloth: Entity, hand: Entity) {
+//!     let clip = ClothAttachment::corner(GridCorner::TopLeft)
+//!         .with_points([Vec3::new(0.0, 0.05, 0.0)])
+//!         .with_break_force(30.0);
+//!     commands.spawn((clip.to(hand), AttachmentOf(cloth)));
+//! }
+//!
+//! fn on_break(broken: On<AttachmentBroken>) {
+//!     println!("{} lost its hold at {} N", broken.entity, broken.force.length());
+//! }
+//! ```
+//!
+//! An attachment holds **rigidly** unless it has a compliance or a break force: then its particles are kinematic, as those of
+//! pins are. They move from where they are at the start of a step to where the entity is at its end, evenly over the
+//! substeps: along a straight line where it moves, along an arc where it turns. Where it does not move they have no
+//! velocity. An entity that moves faster than [`ClothCollider::TELEPORT_SPEED`](crate::collider::ClothCollider::TELEPORT_SPEED)
+//! is put elsewhere: its particles jump, and have no velocity. Where all that holds a cloth jumps, the whole cloth does, with
+//! the motion that it has.
+//!
+//! One with a **compliance** α is a spring of zero length from each particle to its point: they carry F for a gap of α F together,
+//! however many particles that are. Solved together with the lines, so that it adds no stretch. One with a **break
+//! force** is the same, as stiff as it can be measured: at the break force it gives way by [`ClothAttachment::GIVE`].
+//!
+//! What it carries is in [`AttachmentForce`], a mean over the step. Where that exceeds the break force, and where the entity that
+//! holds it is despawned, the attachment is despawned and [`AttachmentBroken`] triggered for the cloth; the particles fly
+//! on with the velocity that they have. A cloth takes its attachments with it when it is despawned.
+//!
+//! Where several things hold a particle, a pin ([`ClothPins`](crate::pins::ClothPins)) counts before an attachment, a rigid
+//! attachment before a motion constraint and before the player's hand, a later attachment of [`ClothAttachments`] before an
+//! earlier one. Springs add up.
+
+mod held;
+mod pose;
+mod prepare;
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+pub use held::{AttachedParticles, HeldPoint};
+pub use prepare::{AttachmentState, break_attachments, prepare_attachments};
+
+use crate::{
+    error::{ClothErrorKind, ClothStatus},
+    pins::{GridCorner, GridEdge, PinSelection},
+};
+
+/// Holds particles of a cloth at an entity. Needs [`AttachmentOf`] and [`AttachedTo`]. See the [module](self).
+///
+/// Change it at any time. A value that is wrong is reported in the [`ClothStatus`] of this entity, and the last valid ones
+/// stay in force.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+#[require(AttachmentState, AttachmentForce, ClothStatus)]
+pub struct ClothAttachment {
+    /// What is held. A selection that is wrong is reported and left out.
+    pub selections: Vec<PinSelection>,
+    /// Where it is held.
+    pub offset: AttachmentOffset,
+    /// How far the whole gives way to a force [m/N]; 0, the default, is rigid.
+    pub compliance: f32,
+    /// What it carries at most, as a mean over a step \[N\]. `None`, the default: anything.
+    pub break_force: Option<f32>,
+}
+
+/// Where an attachment holds its particles.
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
+#[non_exhaustive]
+pub enum AttachmentOffset {
+    /// Where they are, relative to the entity, when they are attached (at rest, for a new cloth).
+    #[default]
+    Keep,
+    /// At points of the entity's own space \[m\]: one for each particle, in the order of the selections, or one for all. They
+    /// move there within one step, evenly over the substeps.
+    Points(Vec<Vec3>),
+}
+
+/// The cloth that an attachment belongs to.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
+#[relationship(relationship_target = ClothAttachments)]
+pub struct AttachmentOf(pub Entity);
+
+/// The attachments of a cloth. They are despawned with it.
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+#[relationship_target(relationship = AttachmentOf, linked_spawn)]
+pub struct ClothAttachments(Vec<Entity>);
+
+/// The entity that holds an attachment. It needs a `Transform`; its parents and its scale count.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
+#[relationship(relationship_target = Attachments)]
+pub struct AttachedTo(pub Entity);
+
+/// The attachments that an entity holds. They break when it is despawned.
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+#[relationship_target(relationship = AttachedTo)]
+pub struct Attachments(Vec<Entity>);
+
+/// With which force the cloth pulls at what holds an attachment, where that has a compliance or a break force; 0 for a rigid
+/// one, whose part in [`ClothPinForces`](crate::reaction::ClothPinForces) is not told apart.
+///
+/// Written by [`break_attachments`] alone.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct AttachmentForce {
+    /// Sum over its particles, mean over the last step, in world axes \[N\].
+    pub force: Vec3,
+}
+
+/// An attachment is gone: it was pulled too hard, or what held it was despawned. Triggered for the cloth.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Reflect)]
+pub struct AttachmentBroken {
+    /// The cloth.
+    pub entity: Entity,
+    /// The attachment; it is despawned after its observers have run.
+    pub attachment: Entity,
+    /// What held it. May be despawned: see `reason`.
+    pub target: Entity,
+    /// What it carried in the last step, in world axes \[N\]; 0 for one that was rigid.
+    pub force: Vec3,
+    /// Why.
+    pub reason: BreakReason,
+}
+
+/// Why an attachment broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[non_exhaustive]
+pub enum BreakReason {
+    /// It carried more than [`ClothAttachment::break_force`].
+    Force,
+    /// The entity that held it was despawned, or [`AttachedTo`] was removed.
+    TargetGone,
+}
+
+impl ClothAttachment {
+    /// By how much an attachment without compliance gives way at its break force \[m\].
+    pub const GIVE: f32 = 2e-5;
+
+    /// Holds particles rigidly where they are.
+    pub fn new(selection: PinSelection) -> Self {
+        Self {
+            selections: vec![selection],
+            ..Self::default()
+        }
+    }
+
+    /// Holds a corner of a grid.
+    pub fn corner(corner: GridCorner) -> Self {
+        Self::new(PinSelection::Corner(corner))
+    }
+
+    /// Holds an edge of a grid.
+    pub fn edge(edge: GridEdge) -> Self {
+        Self::new(PinSelection::Edge(edge))
+    }
+
+    /// Holds particles by index.
+    pub fn particles(particles: impl IntoIterator<Item = u32>) -> Self {
+        Self {
+            selections: particles.into_iter().map(PinSelection::Particle).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Holds every particle that lies within a ball (in the cloth's frame \[m\]) at rest.
+    pub fn within(center: Vec3, radius: f32) -> Self {
+        Self::new(PinSelection::Within { center, radius })
+    }
+
+    /// At points of the entity's own space \[m\]: one for each particle, or one for all.
+    pub fn with_points(self, points: impl IntoIterator<Item = Vec3>) -> Self {
+        let offset = AttachmentOffset::Points(points.into_iter().collect());
+        Self { offset, ..self }
+    }
+
+    /// With this compliance [m/N].
+    pub fn with_compliance(self, compliance: f32) -> Self {
+        Self { compliance, ..self }
+    }
+
+    /// Breaks above this force \[N\].
+    pub fn with_break_force(self, newtons: f32) -> Self {
+        Self {
+            break_force: Some(newtons),
+            ..self
+        }
+    }
+
+    /// With the entity that holds it, as a bundle.
+    pub fn to(self, target: Entity) -> (Self, AttachedTo) {
+        (self, AttachedTo(target))
+    }
+
+    /// What is wrong with the values. What is wrong with the selections depends on the cloth.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let compliance = ClothErrorKind::number(
+            "ClothAttachment.compliance",
+            self.compliance,
+            |c| c >= 0.0 && c.is_finite(),
+            "at least 0 and finite [m/N]",
+        );
+        let break_force = self.break_force.and_then(|force| {
+            ClothErrorKind::number(
+                "ClothAttachment.break_force",
+                force,
+                |f| f > 0.0 && f.is_finite(),
+                "above 0 and finite [N]",
+            )
+        });
+        let points = match &self.offset {
+            AttachmentOffset::Keep => None,
+            AttachmentOffset::Points(points) => points
+                .iter()
+                .find_map(|p| ClothErrorKind::vector("ClothAttachment.offset", *p)),
+        };
+        [compliance, break_force, points]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    /// The compliance of the whole, that of [`Self::GIVE`] included [m/N].
+    fn give(&self) -> f32 {
+        let least = self.break_force.map_or(0.0, |force| Self::GIVE / force);
+        self.compliance.max(least)
+    }
+}

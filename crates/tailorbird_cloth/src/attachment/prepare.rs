@@ -1,0 +1,300 @@
+//! Reads the attachments at the start of a step, and breaks them at its end.
+
+use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+use bevy_transform::helper::{ComputeGlobalTransformError, TransformHelper};
+
+use super::{
+    AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
+    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, held::Body, pose::Pose,
+};
+use crate::{
+    cloth::Cloth,
+    collider::ClothCollider,
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    frame::ClothFrame,
+    particles::ClothParticles,
+    sleep::ClothRest,
+    step::ClothStep,
+    topology::{ClothTopology, Topology},
+};
+
+/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct AttachmentState {
+    /// The last values that were valid.
+    valid: Option<ClothAttachment>,
+    /// Particles in storage order, and their points in the target's own space \[m\].
+    #[reflect(ignore)]
+    points: Vec<(u32, Vec3)>,
+    /// Of each particle [m/N]; none for a rigid attachment.
+    compliances: Option<Vec<f32>>,
+    target: Option<Entity>,
+    /// Where the target was at the end of the step before.
+    #[reflect(ignore)]
+    pose: Option<Pose>,
+    /// Of the topology.
+    revision: u64,
+    /// Whether the particles are still to be found.
+    stale: bool,
+    /// What is wrong with the selections and points.
+    #[reflect(ignore)]
+    wrong: Vec<ClothErrorKind>,
+}
+
+/// Reads what holds the attachments, and where it is at the end of this step.
+///
+/// What is wrong with an attachment is reported for its entity, and what was valid last stays in force: the particles stay
+/// held where the target was.
+pub fn prepare_attachments(
+    step: Res<ClothStep>,
+    helper: TransformHelper,
+    mut cloths: Query<
+        (
+            Entity,
+            Option<&ClothAttachments>,
+            &ClothTopology,
+            &ClothFrame,
+            &ClothRest,
+            &mut ClothParticles,
+            &mut AttachedParticles,
+        ),
+        With<Cloth>,
+    >,
+    mut attachments: Query<
+        (
+            Entity,
+            Ref<ClothAttachment>,
+            Option<&AttachedTo>,
+            &AttachmentForce,
+            &mut AttachmentState,
+            &mut ClothStatus,
+        ),
+        With<AttachmentOf>,
+    >,
+    mut orphans: Query<(Entity, &mut ClothStatus), (With<ClothAttachment>, Without<AttachmentOf>)>,
+    commands: ParallelCommands,
+) {
+    for (entity, mut status) in &mut orphans {
+        let error = ClothErrorKind::unrelated("AttachmentOf");
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Attachment,
+            [error],
+        );
+    }
+    for (cloth, list, topology, frame, rest, mut particles, mut attached) in &mut cloths {
+        if particles.is_empty() || list.is_none() && attached.is_empty() {
+            continue;
+        }
+        let mut changed = false;
+        let bodies_before = attached.bodies.len();
+        attached.clear();
+        for attachment in list.into_iter().flat_map(RelationshipTarget::iter) {
+            let Ok((entity, data, to, carried, mut state, mut status)) =
+                attachments.get_mut(attachment)
+            else {
+                continue;
+            };
+            let mut errors = data.errors();
+            if (data.is_changed() || state.valid.is_none()) && errors.is_empty() {
+                state.valid = Some(ClothAttachment::clone(&data));
+                state.stale = true;
+            }
+            let Some(&AttachedTo(target)) = to else {
+                if let Some(target) = state.target {
+                    let broken = AttachmentBroken {
+                        entity: cloth,
+                        attachment,
+                        target,
+                        force: carried.force,
+                        reason: BreakReason::TargetGone,
+                    };
+                    commands.command_scope(|commands| give_up(commands, broken));
+                } else {
+                    errors.push(ClothErrorKind::unrelated("AttachedTo"));
+                }
+                let source = ErrorSource::Attachment;
+                ClothStatus::update(&mut status, entity, &commands, source, errors);
+                continue;
+            };
+            let pose = match helper.compute_global_transform(target) {
+                Ok(transform) => Pose::of(&transform),
+                Err(ComputeGlobalTransformError::MissingTransform(entity)) => {
+                    Err(ClothErrorKind::NoTransform { value: entity })
+                }
+                // It was despawned in this frame, and its relationship is about to go.
+                Err(_) => Err(ClothErrorKind::NoTransform { value: target }),
+            };
+            let end = match pose {
+                Ok(pose) => Some(pose),
+                Err(error) => {
+                    errors.push(error);
+                    state.pose
+                }
+            };
+            let known = state.target == Some(target) && state.revision == topology.revision;
+            if let Some(end) = end
+                && (state.stale || !known)
+            {
+                state.resolve(target, end, topology, frame, &particles);
+                changed = true;
+            }
+            errors.extend(state.wrong.iter().cloned());
+            let source = ErrorSource::Attachment;
+            ClothStatus::update(&mut status, entity, &commands, source, errors);
+            let Some(end) = end.filter(|_| state.target.is_some()) else {
+                continue;
+            };
+            let start = state.pose.unwrap_or(end);
+            let far = ClothCollider::TELEPORT_SPEED * step.seconds();
+            let jumped = step.running() && start.distance(&end) > far;
+            let body = Body {
+                attachment,
+                target,
+                start: if jumped { end } else { start },
+                end,
+                jumped: jumped.then_some(start),
+                pulled: Vec3::ZERO,
+                substeps: 0,
+            };
+            attached.add(body, &state.points, state.compliances.as_deref());
+        }
+        changed |= attached.bodies.len() != bodies_before;
+        changed |= attached.finish(frame, &mut particles);
+        attached.disturbed |= changed || attached.bodies.iter().any(|body| body.jumped.is_some());
+        attached.revision += u64::from(changed);
+        // One that sleeps remembers where things were when it fell asleep, however slowly they creep away.
+        if step.running() && (attached.disturbed || !rest.is_asleep()) {
+            for body in &attached.bodies {
+                if let Ok((.., mut state, _)) = attachments.get_mut(body.attachment) {
+                    state.pose = Some(body.end);
+                }
+            }
+        }
+    }
+}
+
+impl AttachmentState {
+    /// Finds the particles, and where they are held.
+    fn resolve(
+        &mut self,
+        target: Entity,
+        pose: Pose,
+        topology: &Topology,
+        frame: &ClothFrame,
+        particles: &ClothParticles,
+    ) {
+        let Some(data) = &self.valid else {
+            return;
+        };
+        let (mut selected, mut errors) = (Vec::new(), Vec::new());
+        for selection in &data.selections {
+            match selection.select("ClothAttachment", topology) {
+                Ok(found) => selected.extend(found),
+                Err(error) => errors.push(error),
+            }
+        }
+        // Those that stay held by the same stay at their points.
+        let stay = data.offset == AttachmentOffset::Keep
+            && self.target == Some(target)
+            && self.revision == topology.revision;
+        let before = std::mem::take(&mut self.points);
+        let map = pose.seen_from(frame.end);
+        let point = |k: usize, i: u32| match &data.offset {
+            AttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
+            AttachmentOffset::Keep => {
+                let mut before = before.iter().filter(|_| stay);
+                let kept = before.find(|(particle, _)| *particle == i);
+                Some(kept.map_or_else(
+                    || map.undo(particles.position.get(i as usize)),
+                    |&(_, point)| point,
+                ))
+            }
+        };
+        if let AttachmentOffset::Points(points) = &data.offset
+            && points.len() != 1
+            && points.len() != selected.len()
+        {
+            errors.push(ClothErrorKind::Count {
+                field: "ClothAttachment.offset".into(),
+                value: points.len(),
+                allowed: format!("1 or one for each of {} particles", selected.len()),
+            });
+            self.points = if self.revision == topology.revision {
+                before
+            } else {
+                Vec::new()
+            };
+        } else {
+            self.points = selected
+                .iter()
+                .enumerate()
+                .filter_map(|(k, &i)| {
+                    let i = topology.order.stored(i);
+                    Some((i, point(k, i).filter(|p| p.is_finite())?))
+                })
+                .collect();
+        }
+        let compliance = data.give();
+        let masses = self.points.iter().map(|&(i, _)| particles.mass[i as usize]);
+        let mass: f32 = masses.clone().sum();
+        let count = self.points.len() as f32;
+        self.compliances = (compliance > 0.0).then(|| {
+            let share = |m| if m > 0.0 { mass / m } else { count };
+            masses
+                .map(|m| (compliance * share(m)).min(f32::MAX))
+                .collect()
+        });
+        if self.target != Some(target) {
+            self.pose = None;
+        }
+        self.target = Some(target);
+        self.revision = topology.revision;
+        (self.stale, self.wrong) = (false, errors);
+    }
+}
+
+/// Tells what the springs carried in the step, and breaks those that carried too much.
+pub fn break_attachments(
+    mut cloths: Query<(Entity, &ClothRest, &mut AttachedParticles), With<Cloth>>,
+    mut attachments: Query<(&AttachmentState, &mut AttachmentForce)>,
+    mut commands: Commands,
+) {
+    for (cloth, rest, mut attached) in &mut cloths {
+        if rest.is_asleep() {
+            continue;
+        }
+        for body in &mut attached.bypass_change_detection().bodies {
+            let Ok((state, mut carried)) = attachments.get_mut(body.attachment) else {
+                continue;
+            };
+            let force = body.pulled / body.substeps.max(1) as f32;
+            (body.pulled, body.substeps) = (Vec3::ZERO, 0);
+            carried.set_if_neq(AttachmentForce { force });
+            let most = state.valid.as_ref().and_then(|valid| valid.break_force);
+            if most.is_some_and(|most| force.length() > most) {
+                let broken = AttachmentBroken {
+                    entity: cloth,
+                    attachment: body.attachment,
+                    target: body.target,
+                    force,
+                    reason: BreakReason::Force,
+                };
+                give_up(commands.reborrow(), broken);
+            }
+        }
+    }
+}
+
+/// Tells observers, then despawns the attachment.
+fn give_up(mut commands: Commands, broken: AttachmentBroken) {
+    commands.trigger(broken);
+    if let Ok(mut attachment) = commands.get_entity(broken.attachment) {
+        attachment.try_despawn();
+    }
+}

@@ -1,0 +1,259 @@
+//! Draws what is held where its holder is drawn.
+//!
+//! Cloth is drawn between its last two steps, and so up to a step late; a bone that is animated in each frame is drawn where it is
+//! now. A cape would be seen to lag behind its shoulders by as much. So whoever writes the mesh moves the particles that are
+//! attached rigidly to the places that their points have now, and those around them along, less and less with the way along
+//! the sheet. The simulation knows nothing of it.
+//!
+//! [`ClothDrawnHolds`] keeps who moves along how much, and computes by how much each particle is drawn elsewhere:
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::Vec3;
+//! # use bevy_transform::components::GlobalTransform;
+//! # use tailorbird_cloth::{attachment::AttachedParticles, drawn::ClothDrawnHolds, prelude::*};
+//! fn write_mesh(
+//!     mut cloths: Query<(
+//!         &GlobalTransform, &ClothTopology, &ClothParticles, &AttachedParticles, &mut ClothDrawnHolds,
+//!     )>,
+//!     places: Query<&GlobalTransform>,
+//! ) {
+//!     let fraction = 0.5; // That of `Time<Fixed>`.
+//!     for (place, topology, particles, attached, mut drawn) in &mut cloths {
+//!         let now = |target| places.get(target).ok().copied();
+//!         drawn.update(topology, particles, attached, place, fraction, now);
+//!         for i in 0..particles.len() {
+//!             let _drawn_at: Vec3 = particles.interpolated(i, fraction) + drawn.offset(i);
+//!         }
+//!     }
+//! }
+//! ```
+
+use std::{cmp::Ordering, collections::BinaryHeap};
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_reflect::prelude::*;
+use bevy_transform::components::GlobalTransform;
+
+use crate::{
+    attachment::AttachedParticles, frame::split, particles::ClothParticles, points::Points,
+    topology::Topology,
+};
+
+/// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothDrawnHolds {
+    /// Of the topology and of what is attached.
+    revisions: [u64; 2],
+    targets: Vec<Entity>,
+    #[reflect(ignore)]
+    held: Vec<Held>,
+    #[reflect(ignore)]
+    weights: Vec<Weight>,
+    /// In storage order, in the cloth's frame \[m\]; empty where all are drawn where they are.
+    #[reflect(ignore)]
+    offsets: Points,
+    /// Where the mean of what each target holds is, before and after, in the cloth's frame.
+    #[reflect(ignore)]
+    motions: Vec<Option<Isometry3d>>,
+}
+
+/// A particle that is drawn at a point of a target.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    /// In storage order.
+    particle: u32,
+    target: u32,
+    /// In the target's own space \[m\].
+    point: Vec3,
+}
+
+/// A free particle that moves along.
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    /// In storage order.
+    particle: u32,
+    target: u32,
+    /// 0 to 1.
+    weight: f32,
+}
+
+impl ClothDrawnHolds {
+    /// How far along the sheet particles move along, as a part of the side of a square of the cloth's area [-].
+    pub const REACH: f32 = 0.3;
+
+    /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
+    /// [`ClothParticles::interpolated`].
+    #[inline]
+    pub fn offset(&self, i: usize) -> Vec3 {
+        if i < self.offsets.len() {
+            self.offsets.get(i)
+        } else {
+            Vec3::ZERO
+        }
+    }
+
+    /// Whether all particles are drawn where they are.
+    pub fn is_still(&self) -> bool {
+        self.offsets.is_empty()
+    }
+
+    /// Computes the offsets of a cloth that is drawn at `place`, at a part of the way between the last two steps, 0 to 1.
+    /// `now` tells where a target is drawn. Targets and cloths that are nowhere move nothing.
+    pub fn update(
+        &mut self,
+        topology: &Topology,
+        particles: &ClothParticles,
+        attached: &AttachedParticles,
+        place: &GlobalTransform,
+        fraction: f32,
+        now: impl Fn(Entity) -> Option<GlobalTransform>,
+    ) {
+        let revisions = [topology.revision, attached.revision()];
+        if self.revisions != revisions {
+            self.revisions = revisions;
+            self.weigh(topology, particles, attached);
+        }
+        self.offsets.clear();
+        let Ok((frame, _)) = split(place) else {
+            return;
+        };
+        if self.held.is_empty() || particles.len() != topology.particles() {
+            return;
+        }
+        self.offsets.resize(particles.len(), 0.0);
+        self.motions.clear();
+        self.motions.resize(self.targets.len(), None);
+        for (k, target) in self.targets.iter().enumerate() {
+            let Some(transform) = now(*target).filter(|at| at.affine().is_finite()) else {
+                continue;
+            };
+            let held = self.held.iter().filter(|held| held.target == k as u32);
+            for held in held {
+                let i = held.particle as usize;
+                let world = transform.affine().transform_point3a(held.point.into());
+                let there = frame.rotation.inverse() * Vec3::from(world - frame.translation);
+                self.offsets
+                    .set(i, there - particles.interpolated(i, fraction));
+            }
+            self.motions[k] = attached.motion(*target, &transform, frame, fraction);
+        }
+        for weight in &self.weights {
+            if let Some(motion) = self.motions[weight.target as usize] {
+                let i = weight.particle as usize;
+                let from = particles.interpolated(i, fraction);
+                self.offsets.add(i, (motion * from - from) * weight.weight);
+            }
+        }
+    }
+
+    /// Finds who moves along.
+    fn weigh(
+        &mut self,
+        topology: &Topology,
+        particles: &ClothParticles,
+        attached: &AttachedParticles,
+    ) {
+        self.targets.clear();
+        self.held.clear();
+        self.weights.clear();
+        for point in attached.rigid() {
+            let known = self.targets.iter().position(|t| *t == point.target);
+            let target = known.unwrap_or_else(|| {
+                self.targets.push(point.target);
+                self.targets.len() - 1
+            });
+            self.held.push(Held {
+                particle: particles.order().stored(point.particle),
+                target: target as u32,
+                point: point.point,
+            });
+        }
+        let count = topology.particles();
+        let area = topology.cell_area() * count as f32;
+        let reach = Self::REACH * area.sqrt();
+        let ways: Vec<Vec<f32>> = (0..self.targets.len() as u32)
+            .map(|k| {
+                let held = self.held.iter().filter(|held| held.target == k);
+                ways(topology, held.map(|held| held.particle), reach)
+            })
+            .collect();
+        let mut fixed = vec![false; count];
+        let pins = particles
+            .pinned()
+            .map(|i| particles.order().stored(i as u32));
+        for i in pins.chain(self.held.iter().map(|held| held.particle)) {
+            if let Some(fixed) = fixed.get_mut(i as usize) {
+                *fixed = true;
+            }
+        }
+        for particle in (0..count).filter(|&i| !fixed[i]) {
+            let all: f32 = ways.iter().map(|way| way[particle].powi(-2)).sum();
+            for (k, way) in ways.iter().enumerate() {
+                let q = way[particle] / reach;
+                if q < 1.0 {
+                    // Between several targets the nearer one counts more; 1 at a target, 0 with no kink at the end.
+                    let share = way[particle].powi(-2) / all;
+                    self.weights.push(Weight {
+                        particle: particle as u32,
+                        target: k as u32,
+                        weight: share * (1.0 - q * q) * (1.0 - q * q),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// A particle that a way leads to.
+#[derive(Clone, Copy, PartialEq)]
+struct Reached {
+    way: f32,
+    particle: u32,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    /// The nearest is the greatest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let way = other.way.total_cmp(&self.way);
+        way.then(other.particle.cmp(&self.particle))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// How far it is along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite where it is
+/// further than `reach` \[m\].
+fn ways(topology: &Topology, from: impl Iterator<Item = u32>, reach: f32) -> Vec<f32> {
+    let rest = &topology.rest_positions;
+    let mut ways = vec![f32::INFINITY; rest.len()];
+    let mut next = BinaryHeap::new();
+    for particle in from.filter(|&i| (i as usize) < rest.len()) {
+        ways[particle as usize] = 0.0;
+        next.push(Reached { way: 0.0, particle });
+    }
+    while let Some(Reached { way, particle }) = next.pop() {
+        if way > ways[particle as usize] {
+            continue;
+        }
+        for &to in topology.neighbors(particle).iter() {
+            let further = way + rest[to as usize].distance(rest[particle as usize]);
+            if further < ways[to as usize] && further < reach {
+                ways[to as usize] = further;
+                next.push(Reached {
+                    way: further,
+                    particle: to,
+                });
+            }
+        }
+    }
+    ways
+}

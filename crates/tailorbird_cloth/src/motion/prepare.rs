@@ -1,0 +1,357 @@
+//! Reads motion constraints and their targets at the start of a step, and holds them in each substep.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+use fearless_simd::Level;
+
+use super::{ClothMotionConstraints, ClothMotionTargets, TargetSpace};
+use crate::{
+    cloth::Cloth,
+    collider::ClothCollider,
+    error::{ClothStatus, ErrorSource},
+    frame::ClothFrame,
+    memory::heap,
+    numbers::Numbers,
+    particles::ClothParticles,
+    points::Points,
+    sleep::ClothRest,
+    solver::kernels::{
+        lanes::{Shared, SharedPoints},
+        limit::{self, Backstop, Limits},
+        normals,
+    },
+    stages::Substep,
+    step::ClothStep,
+    topology::{ClothTopology, Topology},
+};
+
+/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct MotionState {
+    /// Furthest from the target \[m\]; empty where nothing is constrained.
+    #[reflect(ignore)]
+    max_distance: Numbers,
+    /// Empty where there is no backstop \[m\].
+    #[reflect(ignore)]
+    backstop_distance: Numbers,
+    #[reflect(ignore)]
+    backstop_radius: Numbers,
+    /// At the start and at the end of the step, in the cloth's frame \[m\].
+    #[reflect(ignore)]
+    targets: [Points; 2],
+    #[reflect(ignore)]
+    normals: [Points; 2],
+    /// Particles whose largest distance is 0.
+    #[reflect(ignore)]
+    held: Vec<u32>,
+    /// Whether the targets move in this step.
+    moving: bool,
+    disturbed: bool,
+    /// Of the topology.
+    revision: u64,
+}
+
+/// A cloth that sleeps wakes where a target is this far from where it was \[m\].
+const WAKES: f32 = 1e-4;
+
+/// Reads the motion constraints where they changed, and the targets at the end of this step.
+pub fn prepare_motion(
+    step: Res<ClothStep>,
+    mut cloths: Query<
+        (
+            Entity,
+            Option<Ref<ClothMotionConstraints>>,
+            Option<Ref<ClothMotionTargets>>,
+            &ClothTopology,
+            &ClothFrame,
+            &ClothRest,
+            &mut MotionState,
+            &mut ClothParticles,
+            &mut ClothStatus,
+        ),
+        With<Cloth>,
+    >,
+    commands: ParallelCommands,
+) {
+    for (
+        entity,
+        constraints,
+        targets,
+        topology,
+        frame,
+        rest,
+        mut motion,
+        mut particles,
+        mut status,
+    ) in &mut cloths
+    {
+        if particles.is_empty() {
+            continue;
+        }
+        let rebuilt = motion.revision != topology.revision;
+        motion.disturbed = false;
+        let Some(constraints) = constraints else {
+            motion.disturbed = !motion.max_distance.is_empty();
+            *motion.bypass_change_detection() = MotionState {
+                disturbed: motion.disturbed,
+                ..MotionState::default()
+            };
+            particles.limit([].into_iter());
+            for source in [ErrorSource::Motion, ErrorSource::MotionTargets] {
+                ClothStatus::update(&mut status, entity, &commands, source, None);
+            }
+            continue;
+        };
+        if rebuilt || constraints.is_changed() {
+            let errors = constraints.errors(topology.particles());
+            if errors.is_empty() {
+                motion.read(&constraints, topology);
+            } else if rebuilt {
+                // Those of another shape mean nothing to this one.
+                motion.max_distance.clear();
+                motion.held.clear();
+            }
+            motion.disturbed = true;
+            let source = ErrorSource::Motion;
+            ClothStatus::update(&mut status, entity, &commands, source, errors);
+        }
+        if rebuilt {
+            motion.rest(topology, step.level());
+        }
+        if let Some(targets) = &targets
+            && (rebuilt || targets.is_changed())
+        {
+            let errors = targets.errors(topology.particles());
+            let source = ErrorSource::MotionTargets;
+            ClothStatus::update(&mut status, entity, &commands, source, errors);
+        }
+        motion.revision = topology.revision;
+        if step.running() {
+            let valid = targets.filter(|targets| {
+                !targets.positions.is_empty() && status.is_ok_for(ErrorSource::MotionTargets)
+            });
+            // One that sleeps remembers where the targets were when it fell asleep, however slowly they creep away.
+            if !rest.is_asleep() {
+                motion.pass_on();
+            }
+            if let Some(targets) = valid {
+                let moves = targets.space == TargetSpace::World && frame.is_moving();
+                if rebuilt || targets.is_changed() || moves {
+                    motion.aim(&targets, topology, frame, step.level());
+                }
+                if rebuilt {
+                    motion.stay();
+                }
+            }
+            let furthest = if motion.moving {
+                motion.furthest()
+            } else {
+                0.0
+            };
+            if furthest > ClothCollider::TELEPORT_SPEED * step.seconds() {
+                motion.stay();
+            }
+            motion.disturbed |= furthest > WAKES;
+        }
+        let held = &motion.held;
+        let order = particles.order.clone();
+        let unpinned = |&i: &u32| !particles.is_pinned(order.given(i) as usize);
+        let wanted = held.iter().copied().filter(unpinned);
+        if !wanted.clone().eq(particles.limited.iter().copied()) {
+            let wanted: Vec<u32> = wanted.collect();
+            particles.limit(wanted.into_iter());
+            motion.disturbed = true;
+        }
+    }
+}
+
+impl ClothParticles {
+    /// Replaces the particles that motion constraints hold at their targets.
+    fn limit(&mut self, held: impl Iterator<Item = u32>) {
+        let any = !self.limited.is_empty();
+        self.limited.clear();
+        self.limited.extend(held);
+        if any || !self.limited.is_empty() {
+            self.update_inv_masses();
+        }
+    }
+}
+
+impl MotionState {
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let points = self.targets.iter().chain(&self.normals);
+        let numbers = [
+            &self.max_distance,
+            &self.backstop_distance,
+            &self.backstop_radius,
+        ];
+        points.map(Points::memory_bytes).sum::<usize>()
+            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
+            + heap(&self.held)
+    }
+
+    pub(crate) fn is_disturbed(&self) -> bool {
+        self.disturbed
+    }
+
+    /// Where a target is at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn target(&self, i: usize) -> Vec3 {
+        self.targets[1].get(i)
+    }
+
+    /// Reads valid constraints.
+    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) {
+        let given = |i| topology.order.given(i as u32) as usize;
+        let stored = |values: &super::PerParticle, none: f32| -> Numbers {
+            let value = |i| values.get(given(i)).unwrap_or(none);
+            (0..topology.particles()).map(value).collect()
+        };
+        self.max_distance = stored(&constraints.max_distance, f32::INFINITY);
+        self.backstop_distance = stored(&constraints.backstop_distance, f32::INFINITY);
+        self.backstop_radius = stored(&constraints.backstop_radius, 1.0);
+        if self.backstop_distance.iter().all(|d| d.is_infinite()) {
+            (self.backstop_distance, self.backstop_radius) = Default::default();
+        }
+        let held = self.max_distance.iter().enumerate();
+        self.held = held
+            .filter(|(_, most)| **most == 0.0)
+            .map(|(i, _)| i as u32)
+            .collect();
+    }
+
+    /// Puts the targets to where the particles are at rest.
+    fn rest(&mut self, topology: &Topology, level: Level) {
+        self.targets[1] = topology.rest_positions.iter().copied().collect();
+        self.normals[1] = Points::zeroed(topology.particles());
+        self.compute_normals(topology, level);
+        self.stay();
+    }
+
+    fn compute_normals(&mut self, topology: &Topology, level: Level) {
+        let (targets, normals) = (&self.targets[1], &mut self.normals[1]);
+        match (&topology.lattice, topology.grid) {
+            (Some(lattice), Some(_)) => {
+                let rows = 0..lattice.rows as usize;
+                normals::smooth_lattice(level, lattice, targets, SharedPoints::new(normals), rows);
+            }
+            _ => normals::smooth(&topology.triangles, targets, normals),
+        }
+    }
+
+    /// The end of the step before is the start of this one.
+    fn pass_on(&mut self) {
+        if self.moving {
+            self.stay();
+        }
+    }
+
+    /// Takes all motion out of the step.
+    fn stay(&mut self) {
+        let [start, end] = &mut self.targets;
+        start.copy_from(end);
+        let [start, end] = &mut self.normals;
+        start.copy_from(end);
+        self.moving = false;
+    }
+
+    /// Reads valid targets.
+    fn aim(
+        &mut self,
+        targets: &ClothMotionTargets,
+        topology: &Topology,
+        frame: &ClothFrame,
+        level: Level,
+    ) {
+        let (point, vector): (&dyn Fn(Vec3) -> Vec3, &dyn Fn(Vec3) -> Vec3) = match targets.space {
+            TargetSpace::Frame => (&|p| p, &|v| v),
+            TargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
+                frame.end.rotation.inverse() * v
+            }),
+        };
+        for (i, p) in targets.positions.iter().enumerate() {
+            let i = topology.order.stored(i as u32) as usize;
+            self.targets[1].set(i, point(*p));
+        }
+        if targets.normals.is_empty() {
+            // For a backstop alone.
+            if !self.backstop_distance.is_empty() {
+                self.compute_normals(topology, level);
+            }
+        } else {
+            for (i, n) in targets.normals.iter().enumerate() {
+                let i = topology.order.stored(i as u32) as usize;
+                self.normals[1].set(i, vector(*n).normalize_or_zero());
+            }
+        }
+        self.moving = true;
+    }
+
+    /// How far the target moves in this step that moves furthest \[m\].
+    fn furthest(&self) -> f32 {
+        let [start, end] = &self.targets;
+        let squared = start.iter().zip(end.iter());
+        squared
+            .map(|(from, to)| from.distance_squared(to))
+            .fold(0.0, f32::max)
+            .sqrt()
+    }
+
+    /// Moves what is held at its target on by one substep.
+    pub(crate) fn advance(&self, substep: &Substep, particles: &mut ClothParticles) {
+        let ClothParticles {
+            position, limited, ..
+        } = particles;
+        let left = substep.left() as f32;
+        for &i in limited.iter() {
+            let i = i as usize;
+            if i < self.targets[1].len() {
+                let (from, to) = (position.get(i), self.targets[1].get(i));
+                let next = if left > 1.0 {
+                    from + (to - from) / left
+                } else {
+                    to
+                };
+                position.set(i, next);
+            }
+        }
+    }
+
+    /// Keeps the free particles within their limits.
+    pub(crate) fn hold(&self, substep: &Substep, particles: &mut ClothParticles) {
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            ..
+        } = particles;
+        let len = position.len();
+        if self.max_distance.len() != len {
+            return;
+        }
+        let [start, end] = &self.targets;
+        let [normals_from, normals_to] = &self.normals;
+        let (from, to) = substep.fractions();
+        let limits = Limits {
+            targets: [start, end],
+            fractions: (from, if substep.left() == 1 { 1.0 } else { to }),
+            max_distance: &self.max_distance,
+            backstop: (!self.backstop_distance.is_empty()).then_some(Backstop {
+                normals: [normals_from, normals_to],
+                distance: &self.backstop_distance,
+                radius: &self.backstop_radius,
+            }),
+        };
+        let position = SharedPoints::new(position);
+        let previous = SharedPoints::new(previous_position);
+        let inv_mass = Shared::new(inv_mass);
+        substep.crew.share(0..len, |range| {
+            limit::hold(substep.level, limits, position, previous, inv_mass, range);
+        });
+    }
+}
