@@ -55,7 +55,7 @@ pub struct ClothDrawnHolds {
     /// In storage order, in the cloth's frame \[m\]; empty where all are drawn where they are.
     #[reflect(ignore)]
     offsets: Points,
-    /// Where the mean of what each target holds is, before and after, in the cloth's frame.
+    /// How each target moved from where the cloth is drawn to where it is now, in the cloth's frame.
     #[reflect(ignore)]
     motions: Vec<Option<Isometry3d>>,
 }

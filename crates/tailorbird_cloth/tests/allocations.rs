@@ -130,7 +130,7 @@ fn cloth_adds_no_allocation_to_an_update() {
     let with = allocations(&mut held);
     println!("held: {with}");
     assert!(
-        with < without + u64::from(STEPS),
-        "held: {with}, not {without}"
+        with < with_a_system + u64::from(STEPS),
+        "held: {with}, not {with_a_system}"
     );
 }

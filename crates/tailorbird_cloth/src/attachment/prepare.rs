@@ -130,6 +130,13 @@ pub fn prepare_attachments(
                 // It was despawned in this frame, and its relationship is about to go.
                 Err(_) => Err(ClothErrorKind::NoTransform { value: target }),
             };
+            let known = state.target == Some(target) && state.revision == topology.revision;
+            if let Ok(pose) = pose
+                && (state.stale || !known)
+            {
+                state.resolve(target, pose, topology, frame, &particles);
+                changed = true;
+            }
             let end = match pose {
                 Ok(pose) => Some(pose),
                 Err(error) => {
@@ -137,17 +144,12 @@ pub fn prepare_attachments(
                     state.pose
                 }
             };
-            let known = state.target == Some(target) && state.revision == topology.revision;
-            if let Some(end) = end
-                && (state.stale || !known)
-            {
-                state.resolve(target, end, topology, frame, &particles);
-                changed = true;
-            }
             errors.extend(state.wrong.iter().cloned());
             let source = ErrorSource::Attachment;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
-            let Some(end) = end.filter(|_| state.target.is_some()) else {
+            // Particles of another topology mean nothing in this one.
+            let resolved = state.target.is_some() && state.revision == topology.revision;
+            let Some(end) = end.filter(|_| resolved) else {
                 continue;
             };
             let start = state.pose.unwrap_or(end);

@@ -1,7 +1,7 @@
 //! What is wrong is told, and what was right stays in force.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::prelude::*;
@@ -89,6 +89,31 @@ fn a_target_that_is_nowhere_holds_where_it_was() {
     world.move_transform(hand, Vec3::ZERO);
     world.steps(1);
     assert!(world.errors(attachment).is_empty());
+}
+
+#[test]
+fn another_target_that_is_nowhere_changes_nothing_until_it_is_somewhere() {
+    let (mut world, cloth, _, attachment) = hung();
+    let nowhere = world.spawn(Transform::from_translation(Vec3::NAN));
+    world
+        .app
+        .world_mut()
+        .entity_mut(attachment)
+        .insert(AttachedTo(nowhere));
+    world.steps(3);
+    assert!(world.errors(attachment)[0].contains("GlobalTransform"));
+    assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
+    // Its particles may be others meanwhile.
+    world.edit::<Cloth>(cloth, |cloth| {
+        *cloth = Cloth::grid(Vec2::ONE, UVec2::splat(2));
+    });
+    world.steps(3);
+    world.move_to(nowhere, Transform::from_xyz(3.0, 0.0, 0.0));
+    world.steps(1);
+    assert!(world.errors(attachment).is_empty());
+    let held = world.at(cloth, 0);
+    world.steps(30);
+    assert!(world.at(cloth, 0).distance(held) < 1e-6 && held.is_finite());
 }
 
 impl World {
