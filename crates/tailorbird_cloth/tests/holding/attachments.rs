@@ -146,9 +146,9 @@ fn a_rope_between_two_bones_hangs_as_a_catenary() {
     for _ in 0..60 {
         let a: f64 = 0.5 * (low + high);
         if 2.0 * a * (0.3 / a).sinh() > 1.0 {
-            low = a
+            low = a;
         } else {
-            high = a
+            high = a;
         }
     }
     let sag = (low * ((0.3 / low).cosh() - 1.0)) as f32;

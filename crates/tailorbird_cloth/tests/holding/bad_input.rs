@@ -29,10 +29,10 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         ("break_force", |held| held.break_force = Some(0.0)),
         ("break_force", |held| held.break_force = Some(f32::INFINITY)),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::NAN])
+            held.offset = AttachmentOffset::Points(vec![Vec3::NAN]);
         }),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::ZERO; 3])
+            held.offset = AttachmentOffset::Points(vec![Vec3::ZERO; 3]);
         }),
     ];
     for (name, change) in wrong {
@@ -57,7 +57,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
 fn a_selection_that_is_wrong_is_left_out() {
     let (mut world, cloth, _, attachment) = hung();
     world.edit::<ClothAttachment>(attachment, |held| {
-        held.selections.push(PinSelection::Particle(25))
+        held.selections.push(PinSelection::Particle(25));
     });
     world.steps(60);
     let errors = world.errors(attachment);
@@ -158,10 +158,10 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
             c.max_distance = values.into();
         }),
         ("max_distance has 24 entries", |c| {
-            c.max_distance = vec![0.1; 24].into()
+            c.max_distance = vec![0.1; 24].into();
         }),
         ("backstop_distance", |c| {
-            c.backstop_distance = f32::NAN.into()
+            c.backstop_distance = f32::NAN.into();
         }),
         ("backstop_radius", |c| c.backstop_radius = 0.0.into()),
     ];
@@ -178,7 +178,7 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
         );
         assert!(world.at(cloth, 12).length() < 0.2 + 1e-5);
         world.edit(cloth, |c: &mut ClothMotionConstraints| {
-            *c = ClothMotionConstraints::within(0.3)
+            *c = ClothMotionConstraints::within(0.3);
         });
         world.steps(60);
         assert!(world.errors(cloth).is_empty());
@@ -203,7 +203,7 @@ fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
             normals[7] = broken;
         }
         world.edit(cloth, |targets: &mut ClothMotionTargets| {
-            targets.set(positions, normals)
+            targets.set(positions, normals);
         });
         world.steps(3);
         assert!(
@@ -213,7 +213,7 @@ fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
         );
         assert_eq!(world.positions(cloth), rest(&world, cloth));
         world.edit(cloth, |targets: &mut ClothMotionTargets| {
-            targets.set_positions([Vec3::ZERO; 4])
+            targets.set_positions([Vec3::ZERO; 4]);
         });
         world.steps(1);
         assert!(world.errors(cloth)[0].contains("4 entries"));

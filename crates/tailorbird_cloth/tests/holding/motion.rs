@@ -48,7 +48,7 @@ fn held_rows_are_as_good_as_pins() {
                 .insert(ClothMotionConstraints::within(limits));
         } else {
             world.edit(cloth, |pins: &mut ClothPins| {
-                *pins = ClothPins::edges([GridEdge::Top])
+                *pins = ClothPins::edges([GridEdge::Top]);
             });
         }
         world.steps(60);
