@@ -224,7 +224,7 @@ impl Offscreen {
 }
 
 /// Bevy without a window. The window that it is told of is never opened: pointers want one to belong to.
-fn plugins(size: UVec2) -> bevy::app::PluginGroupBuilder {
+pub fn plugins(size: UVec2) -> bevy::app::PluginGroupBuilder {
     DefaultPlugins
         .set(WindowPlugin {
             primary_window: Some(Window {
@@ -243,7 +243,7 @@ fn plugins(size: UVec2) -> bevy::app::PluginGroupBuilder {
 }
 
 /// What a runner does before its first frame.
-fn complete(app: &mut App) {
+pub fn complete(app: &mut App) {
     while app.plugins_state() == PluginsState::Adding {
         bevy::tasks::tick_global_task_pools_on_main_thread();
     }
@@ -251,7 +251,11 @@ fn complete(app: &mut App) {
     app.cleanup();
 }
 
-fn save(image: &Image, path: &Path) -> Result<(), String> {
+/// Writes a picture.
+///
+/// # Errors
+/// What went wrong, in words.
+pub fn save(image: &Image, path: &Path) -> Result<(), String> {
     let picture = image
         .clone()
         .try_into_dynamic()

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use bevy::{
     camera::Viewport,
+    gltf::GltfPlugin,
     input::{
         ButtonState,
         keyboard::{Key, KeyboardInput},
@@ -40,6 +41,10 @@ pub fn game() -> App {
                 })),
                 ..default()
             })
+            .set(
+                GltfPlugin::default()
+                    .add_custom_vertex_attribute("_CLOTH_PIN", ATTRIBUTE_CLOTH_PIN),
+            )
             .set(WindowPlugin {
                 primary_window: Some(Window {
                     resolution: WindowResolution::new(SIZE.x, SIZE.y),

@@ -2,6 +2,7 @@
 
 mod demo;
 mod fabric;
+mod garment;
 mod textures;
 
 use std::{
@@ -28,6 +29,8 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
+    /// Cut the example garment in assets/garments
+    Garment,
     /// Weave the fabric textures in assets/textures
     Textures,
 }
@@ -35,6 +38,10 @@ enum Task {
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().task {
         Task::Demo { arguments } => Ok(demo::run(&workspace(), &arguments)?),
+        Task::Garment => {
+            garment::write(&workspace().join("assets/garments"))?;
+            Ok(ExitCode::SUCCESS)
+        }
         Task::Textures => {
             textures::write(&workspace().join("assets/textures"))?;
             Ok(ExitCode::SUCCESS)

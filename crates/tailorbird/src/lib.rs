@@ -47,7 +47,9 @@ pub mod prelude {
             ClothDrag, ClothDragPlugin, ClothDragSettings, ClothGrabbed, ClothPinned,
             ClothReleased, ClothUnpinned,
         },
-        mesh::{ClothFromMesh, ClothMeshPlugin},
+        mesh::{
+            ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ColorChannel, MeshParts, MeshPins,
+        },
         picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
         plugins::ClothPlugins,
         sphere_controls::{SphereControls, SphereControlsPlugin},

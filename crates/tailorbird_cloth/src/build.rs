@@ -8,6 +8,7 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
+use tracing::warn;
 
 use crate::{
     cloth::{Cloth, ClothShape},
@@ -106,6 +107,9 @@ pub fn build_topology(
             Ok(new) => {
                 *particles = keep_shape(&topology, &new, &particles)
                     .unwrap_or_else(|| ClothParticles::at_rest(&new));
+                if !new.report.is_clean() {
+                    warn!("{entity}: {}", new.report);
+                }
                 let dropped = new.dropped.clone();
                 topology.0 = new;
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, dropped);

@@ -20,7 +20,7 @@ use crate::{
     sleep::{ClothRest, ClothSleep},
     solver::ClothSolver,
     tethers::ClothTethers,
-    topology::{ClothTopology, Topology, weld::weld},
+    topology::{ClothTopology, Topology, repair::Repaired},
     validate,
 };
 
@@ -123,7 +123,7 @@ impl Cloth {
     ///
     /// # Errors
     /// [`ClothErrorKind::NoTriangles`], [`ClothErrorKind::IndexCount`], [`ClothErrorKind::IndexOutOfRange`],
-    /// [`ClothErrorKind::NonFinitePosition`].
+    /// [`ClothErrorKind::NonFinitePosition`], [`ClothErrorKind::PositionTooFar`].
     pub fn try_mesh(
         positions: impl Into<Vec<Vec3>>,
         indices: impl Into<Vec<u32>>,
@@ -157,8 +157,8 @@ impl Cloth {
 
     /// Where the particles lie at rest, in the entity's own space \[m\]: their order is that of the particles.
     ///
-    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded vertex.
-    /// Empty when the shape is invalid.
+    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded
+    /// vertex, without those of no triangle. Empty when the shape is invalid.
     pub fn rest_positions(&self) -> Vec<Vec3> {
         self.shape.rest_positions()
     }
@@ -189,9 +189,9 @@ impl ClothShape {
             }
             Self::Mesh {
                 positions,
+                indices,
                 weld_distance,
-                ..
-            } => weld(positions, *weld_distance).positions,
+            } => Repaired::new(positions, indices, *weld_distance, Vec3::ONE).positions,
         }
     }
 }

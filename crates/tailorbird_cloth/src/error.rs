@@ -62,6 +62,22 @@ pub enum ClothErrorKind {
         /// What is wrong with it.
         reason: String,
     },
+    /// An asset that a cloth is to be made of did not load.
+    #[error("{asset} did not load: {reason}; must be a mesh, or a scene with meshes, that loads")]
+    AssetNotLoaded {
+        /// The asset.
+        asset: String,
+        /// Why.
+        reason: String,
+    },
+    /// The vertices have no attribute that names the pins.
+    #[error(
+        "ClothFromMesh.pins are named by {attribute}, must be an attribute of the mesh with a number for each vertex"
+    )]
+    MissingAttribute {
+        /// The attribute.
+        attribute: String,
+    },
     /// The number of indices is not a multiple of three.
     #[error("Cloth mesh has {value} indices, must be a multiple of 3")]
     IndexCount {
@@ -86,6 +102,16 @@ pub enum ClothErrorKind {
         /// The vertex.
         vertex: usize,
         /// Its position.
+        value: Vec3,
+    },
+    /// A rest position, scaled as the entity is, is too far away to count in f32.
+    #[error(
+        "Cloth mesh positions[{vertex}] is {value} m, must be within 1,000,000 m of the origin in each direction"
+    )]
+    PositionTooFar {
+        /// The vertex.
+        vertex: usize,
+        /// Its position \[m\].
         value: Vec3,
     },
     /// Triangles without area were left out; the cloth works without them.
@@ -224,6 +250,8 @@ impl ClothErrorKind {
 /// Which check an error came from; a check replaces its own errors alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 pub enum ErrorSource {
+    /// The mesh that a cloth is to be made of.
+    Mesh,
     /// The rest shape.
     Shape,
     /// [`ClothMaterial`](crate::material::ClothMaterial).

@@ -56,6 +56,7 @@ pub mod step;
 pub mod tethers;
 pub mod topology;
 pub mod validate;
+pub mod weights;
 pub mod wind;
 
 /// The types that most users of the crate name.
@@ -87,8 +88,9 @@ pub mod prelude {
         sleep::{ClothRest, ClothSleep},
         solver::ClothSolver,
         step::ClothStep,
-        topology::ClothTopology,
+        topology::{ClothTopology, report::MeshReport},
         validate::ClothReset,
+        weights::ClothWeights,
         wind::{Gusts, Wind, WindModel},
     };
 }

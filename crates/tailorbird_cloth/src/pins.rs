@@ -10,6 +10,7 @@ use crate::{
     material::ClothMaterial,
     particles::{ClothParticles, Held},
     topology::{ClothTopology, Topology},
+    weights::ClothWeights,
 };
 
 /// The particles that are held: they move with the entity and with nothing else. Change it at any time.
@@ -38,6 +39,8 @@ pub struct ClothPin {
 pub enum PinSelection {
     /// The particle with this index.
     Particle(u32),
+    /// The particles with these indices.
+    Particles(Vec<u32>),
     /// The particle at this column and row of a grid.
     Cell(UVec2),
     /// A corner of a grid.
@@ -147,6 +150,11 @@ impl ClothPins {
         Self::of([PinSelection::Within { center, radius }])
     }
 
+    /// Every particle whose painted weight is above `threshold`.
+    pub fn painted(weights: &ClothWeights, threshold: f32) -> Self {
+        Self::of([PinSelection::Particles(weights.above(threshold).collect())])
+    }
+
     /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
     pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
         let rest = cloth.rest_positions();
@@ -208,6 +216,10 @@ impl PinSelection {
         };
         Ok(match *self {
             Self::Particle(particle) => vec![in_range(particle)?],
+            Self::Particles(ref particles) => particles
+                .iter()
+                .map(|&particle| in_range(particle))
+                .collect::<Result<_, _>>()?,
             Self::Cell(at) => {
                 let size = grid()?;
                 // A column beyond the last must not wrap into the next row.

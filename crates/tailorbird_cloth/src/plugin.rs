@@ -209,6 +209,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothPins>()
         .register_type::<ClothGrab>()
         .register_type::<ClothForces>()
+        .register_type::<ClothWeights>()
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
         .register_type::<ClothSolver>()

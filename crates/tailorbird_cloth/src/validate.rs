@@ -1,7 +1,7 @@
 //! Checks: of shapes when they are built, of the state after each step.
 
 use bevy_ecs::prelude::*;
-use bevy_math::UVec2;
+use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
 
 use crate::{
@@ -63,14 +63,7 @@ pub(crate) fn check_shape(shape: &ClothShape) -> Result<(), ClothErrorKind> {
             ) {
                 return Err(error);
             }
-            if let Some((vertex, value)) =
-                positions.iter().enumerate().find(|(_, p)| !p.is_finite())
-            {
-                return Err(ClothErrorKind::NonFinitePosition {
-                    vertex,
-                    value: *value,
-                });
-            }
+            check_positions(positions.iter().copied())?;
             if indices.len() % 3 != 0 {
                 return Err(ClothErrorKind::IndexCount {
                     value: indices.len(),
@@ -97,6 +90,21 @@ pub(crate) fn check_shape(shape: &ClothShape) -> Result<(), ClothErrorKind> {
             Ok(())
         }
     }
+}
+
+/// What is wrong with the vertices of a mesh.
+pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), ClothErrorKind> {
+    /// The farthest from the origin \[m\] in any direction: f32 counts in steps of 6 cm there.
+    const FARTHEST: f32 = 1e6;
+    for (vertex, value) in positions.enumerate() {
+        if !value.is_finite() {
+            return Err(ClothErrorKind::NonFinitePosition { vertex, value });
+        }
+        if value.abs().max_element() > FARTHEST {
+            return Err(ClothErrorKind::PositionTooFar { vertex, value });
+        }
+    }
+    Ok(())
 }
 
 /// Puts a cloth whose state is not finite back to the start of the step.

@@ -1,94 +1,213 @@
-//! Makes a cloth of a mesh that an entity has already.
+//! Makes a cloth of meshes that are there already.
 
-use bevy_asset::{Assets, Handle};
+use bevy_camera::{primitives::Aabb, visibility::NoAutoAabb};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy_mesh::{Mesh, Mesh3d};
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
+    pins::{ClothPin, ClothPins, PinSelection},
+    topology::repair::Repaired,
+    weights::ClothWeights,
 };
 
-/// Makes a cloth of the entity's [`Mesh3d`], as soon as that is loaded.
+use super::{
+    ClothMeshOf, MeshParts, MeshPins,
+    parts::{Finder, Found, MeshSource, append},
+};
+
+/// Makes a cloth of the entity's `Mesh3d` or, where it has none, of all meshes below it, as soon as they are loaded: of a glTF
+/// scene, say. The [guide](super::garments) shows it.
 ///
-/// The entity gets a [`Cloth`] of the mesh's triangles and a mesh of its own that keeps the UVs, colours and all other
-/// attributes; the asset itself stays as it was, other entities may share it. It must be a triangle list that is kept in the
-/// main world.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+/// The entity gets a [`Cloth`] of all triangles. Each mesh is replaced by a copy that the cloth moves, with the same UVs, colours,
+/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are
+/// kept in the main world. Where the entities below are at that time counts, not where they are moved later.
+///
+/// Change it, or remove the `Cloth`, and the cloth is made again. What is wrong with the assets is told by [`ClothStatus`], what
+/// was found in the triangles by [`Topology::report`](tailorbird_cloth::topology::Topology::report).
+#[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Default)]
 #[require(ClothStatus)]
 pub struct ClothFromMesh {
-    /// Vertices no further apart than this \[m\] become one particle.
+    /// Vertices no further apart than this \[m\] become one particle, of different meshes as well.
     pub weld_distance: f32,
+    /// Which vertices are pinned; a pin beside those of [`ClothPins`]. What is painted is kept in [`ClothWeights`].
+    pub pins: MeshPins,
+    /// Which of the meshes below the entity it is made of.
+    pub parts: MeshParts,
 }
 
 impl Default for ClothFromMesh {
+    /// All meshes, welded within [`Cloth::WELD_DISTANCE`], without pins.
     fn default() -> Self {
         Self {
             weld_distance: Cloth::WELD_DISTANCE,
+            pins: MeshPins::None,
+            parts: MeshParts::All,
         }
     }
 }
 
-/// The mesh that a cloth was made of.
-#[derive(Component)]
-pub(super) struct ClothMeshSource(pub(super) Handle<Mesh>);
+impl ClothFromMesh {
+    /// With these pins.
+    pub fn with_pins(mut self, pins: MeshPins) -> Self {
+        self.pins = pins;
+        self
+    }
+
+    /// Of the meshes with, or below entities with, one of these names.
+    pub fn with_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.parts = MeshParts::Named(names.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// With vertices no further apart than this \[m\] as one particle.
+    pub fn with_weld_distance(mut self, distance: f32) -> Self {
+        self.weld_distance = distance;
+        self
+    }
+}
+
+/// The meshes that a cloth was made of.
+#[derive(Component, Clone, Debug)]
+pub(super) struct ClothMeshSource {
+    pub parts: Vec<MeshSource>,
+    /// The pin that they name.
+    pin: Option<ClothPin>,
+}
 
 pub(super) fn cloth_from_mesh(
-    mut entities: Query<(Entity, &ClothFromMesh, &Mesh3d, &mut ClothStatus), Without<Cloth>>,
-    meshes: Res<Assets<Mesh>>,
+    mut entities: Query<(
+        Entity,
+        Ref<ClothFromMesh>,
+        Option<&ClothPins>,
+        Option<&ClothMeshSource>,
+        Has<Cloth>,
+        &mut ClothStatus,
+    )>,
+    finder: Finder,
+    parts: Query<&ClothMeshOf>,
     mut commands: Commands,
     parallel_commands: ParallelCommands,
 ) {
-    for (entity, from_mesh, mesh_3d, mut status) in &mut entities {
-        let Some(mesh) = meshes.get(&mesh_3d.0) else {
+    for (entity, from_mesh, pins, source, is_cloth, mut status) in &mut entities {
+        // A cloth that was not made here stays what it is.
+        let made = source.is_some() && from_mesh.is_changed();
+        if is_cloth && !made {
             continue;
-        };
-        match shape_of(mesh, from_mesh.weld_distance) {
-            Ok(shape) => {
-                ClothStatus::update(
-                    &mut status,
-                    entity,
-                    &parallel_commands,
-                    ErrorSource::Shape,
-                    None,
-                );
-                let source = ClothMeshSource(mesh_3d.0.clone());
-                commands.entity(entity).insert((Cloth { shape }, source));
-            }
-            Err(reason) => {
-                let error = ClothErrorKind::UnusableMesh {
-                    reason: reason.into(),
-                };
-                ClothStatus::update(
-                    &mut status,
-                    entity,
-                    &parallel_commands,
-                    ErrorSource::Shape,
-                    [error],
-                );
-            }
         }
+        let mut errors = Vec::new();
+        match make(entity, &from_mesh, &finder, &mut errors) {
+            Ok(None) => {}
+            Ok(Some(made)) => {
+                let mut pins = pins.cloned().unwrap_or_default();
+                if let Some(old) = source {
+                    pins.pins.retain(|pin| Some(pin) != old.pin.as_ref());
+                    give_back(old, &made.source, &parts, &mut commands);
+                }
+                pins.pins.extend(made.source.pin.clone());
+                let mut entity = commands.entity(entity);
+                entity.insert((made.cloth, made.source, pins));
+                match made.weights {
+                    Some(weights) => entity.insert(weights),
+                    None => entity.remove::<ClothWeights>(),
+                };
+            }
+            Err(error) => errors.push(error),
+        }
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &parallel_commands,
+            ErrorSource::Mesh,
+            errors,
+        );
     }
 }
 
-fn shape_of(mesh: &Mesh, weld_distance: f32) -> Result<ClothShape, &'static str> {
-    if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
-        return Err("is not a triangle list");
-    }
-    let positions = match mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION) {
-        Ok(Some(VertexAttributeValues::Float32x3(positions))) => positions,
-        Ok(_) => return Err("has no positions of three f32"),
-        Err(_) => return Err("is kept in the render world alone"),
+/// What a cloth is made of.
+struct Made {
+    cloth: Cloth,
+    source: ClothMeshSource,
+    weights: Option<ClothWeights>,
+}
+
+/// Makes the cloth; nothing while assets are loading. Pins that are wrong are left out and reported in `errors`.
+fn make(
+    entity: Entity,
+    from_mesh: &ClothFromMesh,
+    finder: &Finder,
+    errors: &mut Vec<ClothErrorKind>,
+) -> Result<Option<Made>, ClothErrorKind> {
+    let Found::Meshes(parts) = finder.find(entity, &from_mesh.parts)? else {
+        return Ok(None);
     };
-    let indices = mesh.indices().map_or_else(
-        || (0..positions.len() as u32).collect(),
-        |indices| indices.iter().map(|i| i as u32).collect(),
-    );
-    Ok(ClothShape::Mesh {
-        positions: positions.iter().map(|p| Vec3::from(*p)).collect(),
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    let mut meshes = Vec::with_capacity(parts.len());
+    for part in &parts {
+        let Some(mesh) = finder.mesh(part) else {
+            return Ok(None);
+        };
+        append(mesh, part.to_cloth, &mut positions, &mut indices)?;
+        meshes.push(mesh);
+    }
+    let held = match held(from_mesh, &meshes, &positions, &indices) {
+        Ok(held) => held,
+        Err(error) => {
+            errors.push(error);
+            None
+        }
+    };
+    let pin = held.as_ref().map(|(_, pin)| pin.clone());
+    let painted = from_mesh.pins.are_painted();
+    let weights = held.filter(|_| painted).map(|(weights, _)| weights);
+    let shape = ClothShape::Mesh {
+        positions,
         indices,
-        weld_distance,
-    })
+        weld_distance: from_mesh.weld_distance,
+    };
+    Ok(Some(Made {
+        cloth: Cloth { shape },
+        source: ClothMeshSource { parts, pin },
+        weights,
+    }))
+}
+
+/// The weights of the particles, and the pin of those above the threshold.
+fn held(
+    from_mesh: &ClothFromMesh,
+    meshes: &[&Mesh],
+    positions: &[Vec3],
+    indices: &[u32],
+) -> Result<Option<(ClothWeights, ClothPin)>, ClothErrorKind> {
+    if matches!(from_mesh.pins, MeshPins::None) {
+        return Ok(None);
+    }
+    let threshold = from_mesh.pins.threshold()?;
+    let weights = from_mesh.pins.weights(meshes, positions)?;
+    let repaired = Repaired::new(positions, indices, from_mesh.weld_distance, Vec3::ONE);
+    let weights = repaired.weights(&weights);
+    let particles = weights.above(threshold).collect();
+    let pin = ClothPin::new(PinSelection::Particles(particles));
+    Ok(Some((weights, pin)))
+}
+
+/// Gives meshes that are no part of the cloth any more what they were.
+fn give_back(
+    old: &ClothMeshSource,
+    new: &ClothMeshSource,
+    parts: &Query<&ClothMeshOf>,
+    commands: &mut Commands,
+) {
+    for part in &old.parts {
+        let stays = new.parts.iter().any(|other| other.entity == part.entity);
+        if !stays && parts.contains(part.entity) {
+            commands
+                .entity(part.entity)
+                .insert(Mesh3d(part.mesh.clone()))
+                .remove::<(ClothMeshOf, NoAutoAabb, Aabb)>();
+        }
+    }
 }

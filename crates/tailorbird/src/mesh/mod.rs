@@ -2,11 +2,17 @@
 
 mod build;
 mod from_mesh;
+pub mod garments;
+mod parts;
+mod pins;
 mod tangents;
+mod vertices;
 mod write;
 
-pub use build::ClothMesh;
+pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
 pub use from_mesh::ClothFromMesh;
+pub use parts::MeshParts;
+pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};

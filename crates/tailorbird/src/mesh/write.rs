@@ -3,7 +3,7 @@
 use bevy_asset::Assets;
 use bevy_camera::primitives::Aabb;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_mesh::{Mesh, VertexAttributeValues};
 use bevy_time::{Fixed, Time};
 use tailorbird_cloth::{
@@ -11,11 +11,12 @@ use tailorbird_cloth::{
     sleep::ClothRest, step::ClothStep, topology::ClothTopology,
 };
 
-use super::{ClothMesh, ClothMeshSettings};
+use super::{ClothMesh, ClothMeshPart, ClothMeshSettings};
 
 /// Writes positions, normals and tangents between the last two steps, and the box around them.
 ///
-/// The particles live in the entity's rigid frame, the mesh in its own space: they differ by the scale alone. A mesh that
+/// The particles live in the entity's rigid frame, its mesh in its own space: they differ by the scale alone. A mesh of an entity
+/// below lies where that was when the cloth was made. A mesh that
 /// would stay as it is, while the simulation is paused or the cloth sleeps, is left alone.
 pub(super) fn write_cloth_mesh(
     mut commands: Commands,
@@ -23,7 +24,6 @@ pub(super) fn write_cloth_mesh(
     fixed: Option<Res<Time<Fixed>>>,
     step: Option<Res<ClothStep>>,
     mut cloths: Query<(
-        Entity,
         &mut ClothMesh,
         &ClothRest,
         &ClothParticles,
@@ -31,8 +31,8 @@ pub(super) fn write_cloth_mesh(
         &ClothTopology,
         &ClothFrame,
         &ClothBounds,
-        Option<&mut Aabb>,
     )>,
+    mut aabbs: Query<&mut Aabb>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
     let Some(step) = step else {
@@ -44,9 +44,7 @@ pub(super) fn write_cloth_mesh(
         }
         _ => 1.0,
     };
-    for (entity, mut cloth_mesh, rest, particles, normals, topology, frame, bounds, aabb) in
-        &mut cloths
-    {
+    for (mut cloth_mesh, rest, particles, normals, topology, frame, bounds) in &mut cloths {
         // One that sleeps stays where it fell asleep.
         let (steps, fraction) = match rest.asleep_since() {
             Some(step) => (step, 1.0),
@@ -58,35 +56,38 @@ pub(super) fn write_cloth_mesh(
         if stale || particles.is_empty() || cloth_mesh.written == Some(now) {
             continue;
         }
-        let Some(mut mesh) = meshes.get_mut(&cloth_mesh.handle) else {
-            continue;
-        };
-        write_vertices(
-            &mut mesh,
-            &mut cloth_mesh,
-            particles,
-            normals,
-            fraction,
-            frame.scale(),
-        );
-        cloth_mesh.written = Some(now);
-
-        let (a, b) = (bounds.min / frame.scale(), bounds.max / frame.scale());
-        let new = Aabb::from_min_max(a.min(b), a.max(b));
-        match aabb {
-            Some(mut aabb) => {
+        let scale = frame.scale();
+        let (a, b) = (bounds.min / scale, bounds.max / scale);
+        let around = Aabb::from_min_max(a.min(b), a.max(b));
+        for part in &mut cloth_mesh.parts {
+            let Some(mut mesh) = meshes.get_mut(&part.handle) else {
+                continue;
+            };
+            write_vertices(&mut mesh, part, particles, normals, fraction, scale);
+            let new = part
+                .from_cloth
+                .map_or(around, |from_cloth| moved(around, from_cloth));
+            if let Ok(mut aabb) = aabbs.get_mut(part.entity) {
                 aabb.set_if_neq(new);
-            }
-            None => {
-                commands.entity(entity).insert(new);
+            } else if let Ok(mut shown) = commands.get_entity(part.entity) {
+                shown.insert(new);
             }
         }
+        cloth_mesh.written = Some(now);
+    }
+}
+
+/// A box around a box in another space.
+fn moved(aabb: Aabb, by: Affine3A) -> Aabb {
+    Aabb {
+        center: by.transform_point3a(aabb.center),
+        half_extents: by.matrix3.abs() * aabb.half_extents,
     }
 }
 
 fn write_vertices(
     mesh: &mut Mesh,
-    cloth_mesh: &mut ClothMesh,
+    part: &mut ClothMeshPart,
     particles: &ClothParticles,
     normals: &ClothNormals,
     fraction: f32,
@@ -98,13 +99,13 @@ fn write_vertices(
     let Some(mut positions) = take(mesh, Mesh::ATTRIBUTE_POSITION) else {
         return;
     };
-    for (position, &particle) in positions.iter_mut().zip(&cloth_mesh.particle_of_vertex) {
+    for (position, &particle) in positions.iter_mut().zip(&part.particle_of_vertex) {
         *position = (particles.interpolated(particle as usize, fraction) * unscale).to_array();
     }
     let Some(mut vertex_normals) = take(mesh, Mesh::ATTRIBUTE_NORMAL) else {
         return;
     };
-    for (normal, &index) in vertex_normals.iter_mut().zip(&cloth_mesh.normal_of_vertex) {
+    for (normal, &index) in vertex_normals.iter_mut().zip(&part.normal_of_vertex) {
         let n = normals.interpolated(index as usize, fraction);
         *normal = if uniform {
             n
@@ -113,7 +114,24 @@ fn write_vertices(
         }
         .to_array();
     }
-    if let Some(tangents) = &mut cloth_mesh.tangents
+    if let Some(from_cloth) = part.from_cloth {
+        for position in &mut positions {
+            *position = from_cloth
+                .transform_point3(Vec3::from(*position))
+                .to_array();
+        }
+        // Normals transform by the inverse transpose.
+        let to_normal = Mat3::from(from_cloth.matrix3).inverse().transpose();
+        for normal in &mut vertex_normals {
+            let n = Vec3::from(*normal);
+            *normal = (to_normal * n).normalize_or(n).to_array();
+        }
+    }
+    for &vertex in &part.backs {
+        let normal = &mut vertex_normals[vertex as usize];
+        *normal = (-Vec3::from(*normal)).to_array();
+    }
+    if let Some(tangents) = &mut part.tangents
         && let Some(VertexAttributeValues::Float32x4(values)) = mesh
             .try_attribute_mut_option(Mesh::ATTRIBUTE_TANGENT)
             .ok()

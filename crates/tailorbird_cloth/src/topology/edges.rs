@@ -15,13 +15,10 @@ use super::{
     neighbors::NeighborLists,
     order::ParticleOrder,
     recognize::Recognized,
+    repair::Repaired,
     weave::Weave,
-    weld::weld,
 };
 use crate::error::ClothErrorKind;
-
-/// A triangle whose area is below this part of its longest edge squared counts as degenerate.
-const DEGENERATE: f32 = 1e-6;
 
 /// Particles that are this part of the square root of twice the area out of a plane still count as lying in it.
 const FLAT: f32 = 1e-4;
@@ -37,21 +34,27 @@ pub(super) fn build(
     weld_distance: f32,
     scale: Vec3,
 ) -> Result<Topology, ClothErrorKind> {
-    let welded = weld(positions, weld_distance);
-    let rest_positions: Vec<Vec3> = welded.positions.iter().map(|p| *p * scale).collect();
-    let mut topology = Topology {
-        particle_of_vertex: welded.particle_of_vertex,
-        rest_positions,
-        ..Default::default()
-    };
-    triangles(indices, &mut topology);
-    if topology.triangles.is_empty() {
+    let repaired = Repaired::new(positions, indices, weld_distance, scale);
+    if repaired.triangles.is_empty() {
         return Err(ClothErrorKind::NoTriangles {
             vertices: positions.len(),
             triangles: 0,
         });
     }
-    arrange(&mut topology);
+    let mut topology = Topology {
+        dropped: repaired.dropped(),
+        rest_positions: repaired.positions.iter().map(|p| *p * scale).collect(),
+        particle_of_vertex: repaired.particle_of_vertex,
+        triangles: repaired.triangles,
+        turned: repaired.turned,
+        copies: repaired.copies,
+        report: repaired.report,
+        ..Default::default()
+    };
+    if topology.triangles.len() * 3 < indices.len() {
+        topology.source_triangles = repaired.source_triangles;
+    }
+    arrange(&mut topology, &repaired.edges);
     Ok(topology)
 }
 
@@ -72,11 +75,10 @@ pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Neig
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
-fn arrange(topology: &mut Topology) {
-    let edges = MeshEdges::new(topology.particles(), &topology.triangles);
+fn arrange(topology: &mut Topology, edges: &MeshEdges) {
     topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
     let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-    if let Some(grid) = Recognized::detect(rest, triangles, &edges, None) {
+    if let Some(grid) = Recognized::detect(rest, triangles, edges, None) {
         topology.lattice = Some(Lattice {
             columns: grid.columns as u32,
             rows: grid.rows as u32,
@@ -84,7 +86,7 @@ fn arrange(topology: &mut Topology) {
         });
         reorder(topology, grid.order);
     } else {
-        let mut weave = Weave::new(rest, triangles, &edges, None);
+        let mut weave = Weave::new(rest, triangles, edges, None);
         let (chains, order) = Chains::build(rest, &weave);
         weave.renumber(&inverse(&order));
         reorder(topology, order);
@@ -132,51 +134,6 @@ fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     });
     let size = areas.clone().map(Vec3::length).sum::<f32>().sqrt();
     high - low <= FLAT * size && areas.into_iter().all(|area| area.dot(normal) > 0.0)
-}
-
-/// Fills in the triangles, without degenerate and duplicate ones, and lists those.
-fn triangles(indices: &[u32], topology: &mut Topology) {
-    let mut seen = HashSet::new();
-    let (mut degenerate, mut duplicate) = ((0, 0), (0, 0));
-    let count = |tally: &mut (usize, usize), triangle| {
-        if tally.0 == 0 {
-            tally.1 = triangle;
-        }
-        tally.0 += 1;
-    };
-    for (number, corners) in indices.as_chunks::<3>().0.iter().enumerate() {
-        let triangle = corners.map(|v| topology.particle_of_vertex[v as usize]);
-        let [a, b, c] = triangle.map(|i| topology.rest_positions[i as usize]);
-        let longest = (b - a)
-            .length_squared()
-            .max((c - b).length_squared())
-            .max((a - c).length_squared());
-        let area = 0.5 * (b - a).cross(c - a).length();
-        let mut sorted = triangle;
-        sorted.sort_unstable();
-        let flat = area.is_nan() || area <= DEGENERATE * longest;
-        if sorted[0] == sorted[1] || sorted[1] == sorted[2] || flat {
-            count(&mut degenerate, number);
-        } else if !seen.insert(sorted) {
-            count(&mut duplicate, number);
-        } else {
-            topology.triangles.push(triangle);
-            topology.source_triangles.push(number as u32);
-        }
-    }
-    if topology.triangles.len() * 3 == indices.len() {
-        topology.source_triangles = Vec::new();
-    }
-    if let (count @ 1.., first) = degenerate {
-        topology
-            .dropped
-            .push(ClothErrorKind::DegenerateTriangles { count, first });
-    }
-    if let (count @ 1.., first) = duplicate {
-        topology
-            .dropped
-            .push(ClothErrorKind::DuplicateTriangles { count, first });
-    }
 }
 
 /// One side of an edge: the edge with the lower particle first, the opposite corner, whether the edge is the

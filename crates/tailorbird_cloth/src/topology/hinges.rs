@@ -31,7 +31,7 @@ use std::ops::Range;
 
 use bevy_math::{DVec3, Vec3};
 
-use super::coloring::color_in_blocks;
+use super::{coloring::color_in_blocks, mesh_edges::MOST_SIDES};
 use crate::memory::heap;
 
 /// A triangle whose area is below this part of its longest edge squared has no hinges.
@@ -73,7 +73,8 @@ struct Hinge {
 }
 
 impl HingeConstraints {
-    /// The hinges of a mesh: one for each edge of exactly two triangles that are not degenerate.
+    /// The hinges of a mesh: one for each edge of two triangles that are not degenerate. At an edge of up to eight triangles
+    /// the two that lie flattest are a pair, then the next two, as long as they are folded by less than 60°.
     ///
     /// `rest_positions` are those of the particles \[m\].
     ///
@@ -81,7 +82,7 @@ impl HingeConstraints {
     /// When a triangle's corner is not below the number of particles.
     pub fn new(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Self {
         let [mut flat, mut curved] = [const { (Vec::new(), Vec::new()) }; 2];
-        for particles in pairs_of_triangles(triangles) {
+        for particles in pairs_of_triangles(triangles, rest_positions) {
             let corners = particles.map(|i| rest_positions[i as usize].as_dvec3());
             let Some(hinge) = hinge(corners) else {
                 continue;
@@ -132,8 +133,8 @@ impl HingeConstraints {
     }
 }
 
-/// Ends and opposite corners of the edges that exactly two triangles share, in the order of the edges.
-fn pairs_of_triangles(triangles: &[[u32; 3]]) -> Vec<[u32; 4]> {
+/// Ends and opposite corners of the pairs of triangles at an edge, in the order of the edges.
+fn pairs_of_triangles(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Vec<[u32; 4]> {
     let mut sides: Vec<([u32; 2], usize, u32)> = triangles
         .iter()
         .enumerate()
@@ -143,13 +144,56 @@ fn pairs_of_triangles(triangles: &[[u32; 3]]) -> Vec<[u32; 4]> {
         })
         .collect();
     sides.sort_unstable();
-    sides
-        .chunk_by(|a, b| a.0 == b.0)
-        .filter_map(|sides| match sides {
-            &[([a, b], _, c), (_, _, d)] if c != d && a != b => Some([a, b, c, d]),
-            _ => None,
-        })
-        .collect()
+    let mut pairs = Vec::with_capacity(sides.len() / 2);
+    for sides in sides.chunk_by(|a, b| a.0 == b.0) {
+        let [a, b] = sides[0].0;
+        match sides {
+            &[(_, _, c), (_, _, d)] if c != d && a != b => pairs.push([a, b, c, d]),
+            _ if (3..=MOST_SIDES).contains(&sides.len()) => {
+                let opposite = sides.iter().map(|side| side.2).collect();
+                pairs.extend(flattest_pairs([a, b], opposite, rest_positions));
+            }
+            _ => {}
+        }
+    }
+    pairs
+}
+
+/// The pairs of the triangles at one edge of more than two: the two that lie flattest, then the next two.
+fn flattest_pairs(
+    [a, b]: [u32; 2],
+    mut opposite: Vec<u32>,
+    rest_positions: &[Vec3],
+) -> Vec<[u32; 4]> {
+    /// The cosine of the largest fold.
+    const MOST_FOLDED: f64 = 0.5;
+    let at = |i: u32| rest_positions[i as usize].as_dvec3();
+    let along = (at(b) - at(a)).normalize_or_zero();
+    // From the edge into the triangle, at right angles.
+    let across = |i: u32| {
+        (at(i) - at(a))
+            .reject_from_normalized(along)
+            .normalize_or_zero()
+    };
+    let mut pairs = Vec::new();
+    loop {
+        let mut best = None;
+        let mut flattest = MOST_FOLDED;
+        for (i, &c) in opposite.iter().enumerate() {
+            for (j, &d) in opposite.iter().enumerate().skip(i + 1) {
+                let flatness = -across(c).dot(across(d));
+                if flatness > flattest && c != d {
+                    (best, flattest) = (Some([i, j]), flatness);
+                }
+            }
+        }
+        let Some([i, j]) = best else {
+            return pairs;
+        };
+        let d = opposite.remove(j);
+        let c = opposite.remove(i);
+        pairs.push([a, b, c, d]);
+    }
 }
 
 /// Measures one hinge; none where a triangle is degenerate.

@@ -204,3 +204,29 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_sheet_with_a_fin_bends_as_if_the_fin_were_not_there() {
+    // A square of two triangles over its diagonal, and a third triangle that stands on that.
+    let positions = [
+        Vec3::ZERO,
+        Vec3::X,
+        Vec3::new(1.0, 1.0, 0.0),
+        Vec3::Y,
+        Vec3::new(0.5, 0.5, 1.0),
+        Vec3::new(0.5, 0.5, -1.0),
+    ];
+    let (sheet, fin, other) = ([[0, 1, 2], [0, 2, 3]], [2, 0, 4], [0, 2, 5]);
+    let alone = HingeConstraints::new(&sheet, &positions);
+    for k in 0..3 {
+        let mut triangles = sheet.to_vec();
+        triangles.insert(k, fin);
+        let hinges = HingeConstraints::new(&triangles, &positions);
+        assert_eq!(hinges.particles, alone.particles);
+        assert_eq!(hinges.coefficients, alone.coefficients);
+    }
+    // Two sheets that cross.
+    let crossed = HingeConstraints::new(&[sheet[0], fin, sheet[1], other], &positions);
+    assert_eq!(crossed.len(), 2);
+    assert!(crossed.particles.contains(&[0, 2, 4, 5]));
+}

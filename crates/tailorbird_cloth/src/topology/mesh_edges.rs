@@ -1,5 +1,8 @@
 //! The edges of a triangle mesh and the triangles on their sides.
 
+/// More triangles than these at one edge are not next to each other.
+pub(super) const MOST_SIDES: usize = 8;
+
 /// The edges of a triangle mesh.
 ///
 /// A *side* is one of the three directed edges of one triangle: side `3 t + s` runs from corner `s` of triangle `t` to
@@ -77,12 +80,12 @@ impl MeshEdges {
         &self.sides[self.offsets[edge] as usize..self.offsets[edge + 1] as usize]
     }
 
-    /// The sides of other triangles on the edge of `side`.
+    /// The sides of other triangles on the edge of `side`; none where there are more than eight triangles, as every one would
+    /// be next to every other.
     pub fn across(&self, side: u32) -> impl Iterator<Item = u32> + '_ {
-        self.sides(self.edge_of_side[side as usize])
-            .iter()
-            .copied()
-            .filter(move |other| *other != side)
+        let sides = self.sides(self.edge_of_side[side as usize]);
+        let few = if sides.len() > MOST_SIDES { &[] } else { sides };
+        few.iter().copied().filter(move |other| *other != side)
     }
 }
 

@@ -12,7 +12,10 @@ pub mod lattice;
 pub mod mesh_edges;
 pub mod neighbors;
 pub mod order;
+mod orientation;
 pub mod recognize;
+pub mod repair;
+pub mod report;
 #[cfg(test)]
 pub(crate) mod test_meshes;
 pub mod triangles;
@@ -31,13 +34,20 @@ use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
 
-use crate::{cloth::ClothShape, error::ClothErrorKind, memory::heap, validate::check_shape};
+use crate::{
+    cloth::ClothShape,
+    error::ClothErrorKind,
+    memory::heap,
+    validate::{check_positions, check_shape},
+};
 use constraints::DistanceConstraints;
 use fabric::Fabric;
 use hinges::HingeConstraints;
 use lattice::Lattice;
 use neighbors::{NeighborLists, Neighbors};
 use order::ParticleOrder;
+use repair::TriangleCopy;
+use report::MeshReport;
 use triangles::Triangles;
 
 /// The [`Topology`] of this cloth, shared. Written by [`build_topology`](crate::build::build_topology) alone; empty until then.
@@ -77,6 +87,10 @@ pub struct Topology {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// For each triangle which one of the source it is; empty where they are the same.
     source_triangles: Vec<u32>,
+    /// The triangles of the source that are turned around, ascending.
+    turned: Vec<u32>,
+    /// The triangles of the source that are there twice.
+    copies: Vec<TriangleCopy>,
     /// For each vertex of the source the particle that moves it; empty for grids, where they are the same.
     particle_of_vertex: Vec<u32>,
     /// The scale that is part of `rest_positions`.
@@ -93,6 +107,8 @@ pub struct Topology {
     neighbors: OnceLock<NeighborLists>,
     /// What was left out.
     pub dropped: Vec<ClothErrorKind>,
+    /// What was found in a mesh; nothing in a grid.
+    pub report: MeshReport,
 }
 
 static REVISION: AtomicU64 = AtomicU64::new(1);
@@ -101,8 +117,8 @@ impl Topology {
     /// Builds the topology of a shape that is scaled by `scale`.
     ///
     /// # Errors
-    /// What is wrong with the shape or the scale. Degenerate and duplicate triangles are left out and listed in
-    /// [`Topology::dropped`].
+    /// What is wrong with the shape or the scale. What is wrong with a mesh and can be repaired is, and is told in
+    /// [`Topology::report`]; triangles that are left out are listed in [`Topology::dropped`] as well.
     pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ClothErrorKind> {
         check_shape(shape)?;
         if !scale.is_finite() || scale.to_array().contains(&0.0) {
@@ -118,7 +134,10 @@ impl Topology {
                 positions,
                 indices,
                 weld_distance,
-            } => edges::build(positions, indices, *weld_distance, scale)?,
+            } => {
+                check_positions(positions.iter().map(|p| *p * scale))?;
+                edges::build(positions, indices, *weld_distance, scale)?
+            }
         };
         topology.revision = REVISION.fetch_add(1, Ordering::Relaxed);
         topology.scale = scale;
@@ -144,6 +163,16 @@ impl Topology {
     pub fn source_triangles(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
         let of = |triangle| self.source_triangles.get(triangle).copied();
         (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(triangle as u32))
+    }
+
+    /// The triangles of the source that are turned around, and the copies of those, ascending.
+    pub fn turned_triangles(&self) -> &[u32] {
+        &self.turned
+    }
+
+    /// The triangles of the source that have the corners of one before, ascending.
+    pub fn copied_triangles(&self) -> &[TriangleCopy] {
+        &self.copies
     }
 
     /// The particle that moves a vertex of the source.
@@ -224,6 +253,9 @@ impl Topology {
             + heap(&self.triangle_areas)
             + heap(&self.areas)
             + heap(&self.dropped)
+            + heap(&self.turned)
+            + heap(&self.copies)
+            + heap(&self.report.islands)
             + self.order.memory_bytes()
             + self.hinges.memory_bytes()
             + self.fabric.as_ref().map_or(0, Fabric::memory_bytes)
