@@ -64,9 +64,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tells Bevy what `_CLOTH_PIN` is.
+/// Tells Bevy what `_CLOTH_PIN` is, which it knows without the first underscore.
 fn gltf() -> GltfPlugin {
-    GltfPlugin::default().add_custom_vertex_attribute("_CLOTH_PIN", ATTRIBUTE_CLOTH_PIN)
+    GltfPlugin::default().add_custom_vertex_attribute("CLOTH_PIN", ATTRIBUTE_CLOTH_PIN)
 }
 
 fn add_scene(app: &mut App, stage: StagePlugin) {

@@ -43,7 +43,7 @@ pub fn game() -> App {
             })
             .set(
                 GltfPlugin::default()
-                    .add_custom_vertex_attribute("_CLOTH_PIN", ATTRIBUTE_CLOTH_PIN),
+                    .add_custom_vertex_attribute("CLOTH_PIN", ATTRIBUTE_CLOTH_PIN),
             )
             .set(WindowPlugin {
                 primary_window: Some(Window {

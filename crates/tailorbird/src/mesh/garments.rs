@@ -57,7 +57,8 @@
 //! | [`vertices`](MeshPins::vertices) | those with these indices |
 //!
 //! A particle is pinned where any of its vertices is. What is painted stays readable for each particle in
-//! [`ClothWeights`](tailorbird_cloth::weights::ClothWeights). Bevy reads an attribute that it does not know where it is told so:
+//! [`ClothWeights`](tailorbird_cloth::weights::ClothWeights). Bevy reads an attribute that it does not know where it is told so, under
+//! its name without the first underscore:
 //!
 //! ```
 //! use bevy_app::prelude::*;
@@ -66,7 +67,7 @@
 //!
 //! # fn plugins() -> impl PluginGroup {
 //! // In place of the one in `DefaultPlugins`: `DefaultPlugins.set(…)`.
-//! let gltf = GltfPlugin::default().add_custom_vertex_attribute("_CLOTH_PIN", ATTRIBUTE_CLOTH_PIN);
+//! let gltf = GltfPlugin::default().add_custom_vertex_attribute("CLOTH_PIN", ATTRIBUTE_CLOTH_PIN);
 //! # PluginGroupBuilder::start::<Group>().add(gltf)
 //! # }
 //! # struct Group;

@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use bevy_math::Vec3;
 
-use super::weave::{EdgeFamily, Weave};
+use super::{
+    coloring::color_in_blocks,
+    weave::{EdgeFamily, Weave},
+};
 use crate::memory::heap;
 
 mod cover;
@@ -14,6 +17,9 @@ use cover::{Cover, cover};
 
 /// Chains solved side by side.
 pub const LANES: usize = 16;
+
+/// After so many passes what is left is taken edge by edge: looking for chains once more takes as long as it did at first.
+const MOST_COVERS: usize = 64;
 
 /// In [`Chains::particle`]: no particle.
 pub const NONE: u32 = u32::MAX;
@@ -165,6 +171,17 @@ fn covers(rest_positions: &[Vec3], weave: &Weave, family: EdgeFamily) -> Vec<Cov
     let mut covers = Vec::new();
     while !edges.is_empty() {
         let pass = covers.len() as u32 + 1;
+        if covers.len() == MOST_COVERS {
+            // The spokes of a hub, of which each pass takes one.
+            let spokes: Vec<[u32; 2]> = edges.iter().map(|e| weave.ends[*e as usize]).collect();
+            for batch in color_in_blocks(&spokes, rest_positions.len()) {
+                let batch = batch.into_iter();
+                covers.push(Cover::single(
+                    batch.map(|k| (edges[k as usize], spokes[k as usize])),
+                ));
+            }
+            break;
+        }
         covers.push(cover(&mut edges, rest_positions, weave, &mut used, pass));
     }
     covers

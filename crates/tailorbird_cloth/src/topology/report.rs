@@ -16,7 +16,7 @@ use bevy_reflect::prelude::*;
 /// | [`duplicate`](Self::duplicate) | drawn, not simulated: the first one is |
 /// | [`backs`](Self::backs) | drawn with the normal of its side, not simulated: the first one is |
 /// | [`turned`](Self::turned) | turned around, so that front and back are told apart as by most triangles of the island |
-/// | [`one_sided`](Self::one_sided) | simulated; the island (a Möbius strip) stays as it is, and at such an edge its front becomes its back |
+/// | [`one_sided`](Self::one_sided) | simulated; the island (a Möbius strip) stays as it is, and at such an edge its front becomes its back: smooth normals cancel there, flat ones are right |
 /// | [`non_manifold`](Self::non_manifold) | simulated; bending is resisted between the two triangles that lie flattest, then between the next two, and none that are folded by more than 60° or of more than eight |
 /// | [`islands`](Self::islands) | simulated as one cloth |
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]

@@ -21,6 +21,20 @@ pub(super) struct Cover {
 }
 
 impl Cover {
+    /// Chains of one edge each, given with its ends; no two share a particle.
+    pub(super) fn single(edges: impl Iterator<Item = (u32, [u32; 2])>) -> Self {
+        let mut cover = Self {
+            starts: vec![0],
+            ..Self::default()
+        };
+        for (edge, ends) in edges {
+            cover.particles.extend(ends);
+            cover.edges.extend([edge, NONE]);
+            cover.starts.push(cover.particles.len());
+        }
+        cover
+    }
+
     pub(super) fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
