@@ -104,7 +104,7 @@ fn draw(path: PathBuf, arguments: &Arguments) -> Result<(), String> {
         std::fs::create_dir_all(folder).map_err(|error| error.to_string())?;
     }
 
-    let mut looks = |app: &mut App, looks: bool| {
+    let looks = |app: &mut App, looks: bool| {
         let world = app.world_mut();
         let mut cameras = world.query::<&mut Camera>();
         cameras
@@ -190,5 +190,5 @@ fn dress(
 }
 
 fn look(mut camera: Single<&mut OrbitCamera>) {
-    **camera = OrbitCamera::new(Vec3::new(0.0, 0.85, 0.0), 55.0, 8.0, 2.2);
+    **camera = OrbitCamera::new(Vec3::new(0.0, 0.82, 0.0), 55.0, 8.0, 1.7);
 }
