@@ -189,7 +189,7 @@ pub(super) fn append(
         None => indices.extend(0..places.len() as u32),
     }
     let own = &mut indices[start..];
-    if own.len() % 3 != 0 {
+    if !own.len().is_multiple_of(3) {
         return Err(ClothErrorKind::IndexCount { value: own.len() });
     }
     let vertices = places.len();

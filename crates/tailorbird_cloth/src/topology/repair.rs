@@ -188,10 +188,9 @@ impl Repaired {
             return;
         }
         let mut number = vec![u32::MAX; used.len()];
-        let mut next = 0;
-        for (number, _) in number.iter_mut().zip(used).filter(|(_, used)| **used) {
+        let in_use = number.iter_mut().zip(used).filter(|(_, used)| **used);
+        for (next, (number, _)) in (0..).zip(in_use) {
             *number = next;
-            next += 1;
         }
         // The vertices of slivers stay with the cloth, so that what they fill stays filled.
         let mut beside = vec![0; used.len()];
