@@ -9,8 +9,8 @@ use crate::{
     cloth::Cloth,
     particles::ClothParticles,
     solver::kernels::range::range,
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
 };
 
 /// The box, in the cloth's frame, around all particles after the last two steps, and so around everything interpolated
@@ -33,7 +33,7 @@ impl ClothBounds {
 
 /// Computes the boxes of all cloths.
 pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         cloth.update_bounds(step.level());
     });
 }

@@ -21,8 +21,8 @@ use crate::{
             sphere::{self, MovingSphere},
         },
     },
-    stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
+    step::ClothStep,
 };
 
 /// A solid thing that every cloth collides with. It follows the entity's `Transform`, from step to step without gaps, and
@@ -204,7 +204,7 @@ pub fn find_contacts(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         colliders.approach(&substep, &mut cloth);
     });
 }
@@ -216,7 +216,7 @@ pub fn collide_sphere(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         colliders.collide_spheres(&substep, &mut cloth);
     });
 }
@@ -228,7 +228,7 @@ pub fn collide_half_space(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         colliders.collide_half_spaces(&substep, &mut cloth);
     });
 }

@@ -11,8 +11,8 @@ use crate::{
     inertia::{ClothInertia, Felt, TeleportMode},
     particles::ClothParticles,
     solver::kernels::rigid,
-    stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, Substep, for_each_awake},
+    step::ClothStep,
 };
 
 /// The rigid frame that a cloth's particles live in: translation and rotation of the entity. Scale is part of the rest
@@ -283,7 +283,7 @@ pub fn prepare_frames(
 /// target.
 pub fn advance_frames(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         cloth.advance(&substep);
     });
 }

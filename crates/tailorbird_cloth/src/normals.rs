@@ -10,8 +10,8 @@ use crate::{
     crew::Crew,
     points::Points,
     solver::kernels::{lanes::SharedPoints, normals},
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_cloth},
+    stages::{ClothStages, ClothStagesItem, for_each_cloth},
+    step::ClothStep,
     topology::Topology,
 };
 
@@ -80,7 +80,7 @@ impl ClothNormals {
 
 /// Computes the normals of all cloths.
 pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_cloth!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_cloth(&step, &mut cloths, &|mut cloth| {
         // One that sleeps may be shaded in another way, or be rebuilt while time stands still.
         if !cloth.rest.is_asleep() || cloth.normals.are_stale(cloth.topology, *cloth.shading) {
             cloth.recompute_normals(step.level(), Crew::ALONE);

@@ -17,8 +17,8 @@ use crate::{
     crew::{Crew, Desk},
     diagnostics::ClothStepTime,
     schedule::ClothSubstep,
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
     wind::BlowingWind,
 };
 
@@ -85,7 +85,7 @@ pub(crate) fn simulate_cloths(
     for cloth in &mut cloths {
         large += usize::from(is_large(&cloth) && !cloth.rest.is_asleep());
     }
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         if !is_large(&cloth) {
             simulate(&mut cloth, Crew::ALONE);
         }

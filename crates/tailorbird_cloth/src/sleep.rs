@@ -20,8 +20,8 @@ use crate::{
     particles::ClothParticles,
     pins::ClothPins,
     solver::ClothSolver,
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
     topology::ClothTopology,
     wind::{BlowingWind, WindModel},
 };
@@ -224,7 +224,7 @@ pub fn rest_cloths(
     colliders: Res<ClothColliders>,
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         cloth.rest(&step, &wind, &colliders);
     });
 }

@@ -7,6 +7,7 @@ use fearless_simd::Level;
 use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
+    cloth::Cloth,
     collider::ClothColliders,
     crew::Crew,
     error::ClothStatus,
@@ -18,6 +19,7 @@ use crate::{
     reaction::ClothPinForces,
     sleep::{ClothRest, ClothSleep},
     solver::{self, ClothSolver},
+    step::ClothStep,
     tethers::ClothTethers,
     topology::ClothTopology,
 };
@@ -96,4 +98,33 @@ impl ClothStagesItem<'_, '_> {
         }
         self.attached.advance(substep, &self.frame, particles);
     }
+}
+
+/// Calls `f` for each cloth, on several threads where [`ClothStep::parallel`] says that it pays. Each call has the cloth for itself,
+/// so that the result does not depend on the number of threads.
+///
+/// Not generic: what shares out to threads is compiled once.
+pub(crate) fn for_each_cloth(
+    step: &ClothStep,
+    cloths: &mut Query<ClothStages, With<Cloth>>,
+    f: &(dyn Fn(ClothStagesItem) + Sync),
+) {
+    if step.parallel() {
+        cloths.par_iter_mut().for_each(f);
+    } else {
+        cloths.iter_mut().for_each(f);
+    }
+}
+
+/// [`for_each_cloth`], for those that do not sleep.
+pub(crate) fn for_each_awake(
+    step: &ClothStep,
+    cloths: &mut Query<ClothStages, With<Cloth>>,
+    f: &(dyn Fn(ClothStagesItem) + Sync),
+) {
+    for_each_cloth(step, cloths, &|cloth| {
+        if !cloth.rest.is_asleep() {
+            f(cloth);
+        }
+    });
 }

@@ -236,29 +236,3 @@ pub fn plan_substeps(
         needed.max().unwrap_or(1)
     });
 }
-
-/// Calls `f` for each item of a query, on several threads where [`ClothStep::parallel`] says that it pays.
-///
-/// Each call has the item for itself, so that the result does not depend on the number of threads.
-macro_rules! for_each_cloth {
-    ($step:expr, $query:expr, $f:expr) => {
-        if $step.parallel() {
-            $query.par_iter_mut().for_each($f)
-        } else {
-            $query.iter_mut().for_each($f)
-        }
-    };
-}
-pub(crate) use for_each_cloth;
-
-/// [`for_each_cloth`], for the stages of those that do not sleep.
-macro_rules! for_each_awake {
-    ($step:expr, $query:expr, |mut $cloth:ident: $item:ty| $do:block) => {
-        crate::step::for_each_cloth!($step, $query, |mut $cloth: $item| {
-            if !$cloth.rest.is_asleep() {
-                $do
-            }
-        })
-    };
-}
-pub(crate) use for_each_awake;

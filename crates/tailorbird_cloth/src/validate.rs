@@ -7,8 +7,8 @@ use bevy_reflect::prelude::*;
 use crate::{
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
 };
 
 /// A cloth was put back to an earlier state.
@@ -113,7 +113,7 @@ pub fn guard_finite(
     mut cloths: Query<ClothStages, With<Cloth>>,
     commands: ParallelCommands,
 ) {
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         cloth.guard(&commands);
     });
 }

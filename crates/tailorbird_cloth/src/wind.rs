@@ -16,8 +16,8 @@ use crate::{
         aerodynamics::{self, Air, AirSheet},
         lanes::SharedPoints,
     },
-    stages::{ClothStages, ClothStagesItem},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
 };
 
 /// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
@@ -180,7 +180,7 @@ pub fn apply_wind(
     wind: Res<BlowingWind>,
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         wind.blow(&step, Crew::ALONE, &mut cloth);
     });
 }

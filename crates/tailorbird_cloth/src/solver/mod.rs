@@ -13,8 +13,8 @@ use bevy_reflect::prelude::*;
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
-    stages::{ClothStages, ClothStagesItem, Substep},
-    step::{ClothStep, for_each_awake},
+    stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
+    step::ClothStep,
     topology::Topology,
 };
 use kernels::verlet::Verlet;
@@ -59,7 +59,7 @@ impl ClothSolver {
 /// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
 pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         integrate(&substep, &mut cloth);
     });
 }
@@ -70,7 +70,7 @@ pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Clo
 /// relaxation, the others as XPBD.
 pub fn solve_constraints(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         solve(&substep, &mut cloth);
     });
 }
@@ -123,7 +123,7 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
 /// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
 pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
-    for_each_awake!(step, cloths, |mut cloth: ClothStagesItem| {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
         calm(&substep, &mut cloth);
     });
 }
