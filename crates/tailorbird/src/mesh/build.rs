@@ -6,7 +6,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Affine3A, Vec3};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
-use tailorbird_cloth::{cloth::Cloth, normals::ClothShading, topology::ClothTopology};
+use tailorbird_cloth::{
+    cloth::Cloth, drawn::ClothDrawnHolds, normals::ClothShading, topology::ClothTopology,
+};
 
 use super::{
     from_mesh::ClothMeshSource, parts::MeshSource, tangents::Tangents, vertices::Vertices,
@@ -14,6 +16,7 @@ use super::{
 
 /// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
 #[derive(Component)]
+#[require(ClothDrawnHolds)]
 pub struct ClothMesh {
     /// Of the topology it was built from.
     pub(super) revision: u64,

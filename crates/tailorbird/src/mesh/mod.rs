@@ -20,6 +20,7 @@ use bevy_camera::visibility::VisibilitySystems;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 use bevy_pbr::StandardMaterial;
+use bevy_transform::TransformSystems;
 
 /// Builds a mesh for each cloth (positions, normals, UVs, tangents), and writes it once per frame, in `PostUpdate`.
 ///
@@ -55,6 +56,8 @@ impl Plugin for ClothMeshPlugin {
             .configure_sets(
                 PostUpdate,
                 ClothMeshSystems
+                    // What holds cloth is where it is drawn.
+                    .after(TransformSystems::Propagate)
                     .before(AssetEventSystems)
                     .before(VisibilitySystems::CheckVisibility)
                     .before(VisibilitySystems::CalculateBounds)

@@ -6,9 +6,11 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_mesh::{Mesh, VertexAttributeValues};
 use bevy_time::{Fixed, Time};
+use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    bounds::ClothBounds, frame::ClothFrame, normals::ClothNormals, particles::ClothParticles,
-    sleep::ClothRest, step::ClothStep, topology::ClothTopology,
+    attachment::AttachedParticles, bounds::ClothBounds, drawn::ClothDrawnHolds, frame::ClothFrame,
+    normals::ClothNormals, particles::ClothParticles, sleep::ClothRest, step::ClothStep,
+    topology::ClothTopology,
 };
 
 use super::{ClothMesh, ClothMeshPart, ClothMeshSettings};
@@ -31,7 +33,9 @@ pub(super) fn write_cloth_mesh(
         &ClothTopology,
         &ClothFrame,
         &ClothBounds,
+        (&AttachedParticles, &GlobalTransform, &mut ClothDrawnHolds),
     )>,
+    places: Query<&GlobalTransform>,
     mut aabbs: Query<&mut Aabb>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
@@ -44,7 +48,7 @@ pub(super) fn write_cloth_mesh(
         }
         _ => 1.0,
     };
-    for (mut cloth_mesh, rest, particles, normals, topology, frame, bounds) in &mut cloths {
+    for (mut cloth_mesh, rest, particles, normals, topology, frame, bounds, held) in &mut cloths {
         // One that sleeps stays where it fell asleep.
         let (steps, fraction) = match rest.asleep_since() {
             Some(step) => (step, 1.0),
@@ -53,7 +57,15 @@ pub(super) fn write_cloth_mesh(
         let now = (steps, fraction, frame.scale());
         let stale =
             cloth_mesh.revision != topology.revision || normals.shading() != cloth_mesh.shading;
-        if stale || particles.is_empty() || cloth_mesh.written == Some(now) {
+        if stale || particles.is_empty() {
+            continue;
+        }
+        let (attached, place, mut drawn) = held;
+        if !rest.is_asleep() {
+            let now = |target| places.get(target).ok().copied();
+            drawn.update(topology, particles, attached, place, fraction, now);
+        }
+        if cloth_mesh.written == Some(now) && (drawn.is_still() || rest.is_asleep()) {
             continue;
         }
         let scale = frame.scale();
@@ -63,7 +75,14 @@ pub(super) fn write_cloth_mesh(
             let Some(mut mesh) = meshes.get_mut(&part.handle) else {
                 continue;
             };
-            write_vertices(&mut mesh, part, particles, normals, fraction, scale);
+            write_vertices(
+                &mut mesh,
+                part,
+                (particles, &drawn),
+                normals,
+                fraction,
+                scale,
+            );
             let new = part
                 .from_cloth
                 .map_or(around, |from_cloth| moved(around, from_cloth));
@@ -88,7 +107,7 @@ fn moved(aabb: Aabb, by: Affine3A) -> Aabb {
 fn write_vertices(
     mesh: &mut Mesh,
     part: &mut ClothMeshPart,
-    particles: &ClothParticles,
+    (particles, drawn): (&ClothParticles, &ClothDrawnHolds),
     normals: &ClothNormals,
     fraction: f32,
     scale: Vec3,
@@ -100,7 +119,9 @@ fn write_vertices(
         return;
     };
     for (position, &particle) in positions.iter_mut().zip(&part.particle_of_vertex) {
-        *position = (particles.interpolated(particle as usize, fraction) * unscale).to_array();
+        let i = particle as usize;
+        let place = particles.interpolated(i, fraction) + drawn.offset(i);
+        *position = (place * unscale).to_array();
     }
     let Some(mut vertex_normals) = take(mesh, Mesh::ATTRIBUTE_NORMAL) else {
         return;
