@@ -11,6 +11,7 @@ mod bad_input;
 mod catenary;
 mod determinism;
 mod drag;
+mod drawn_holds;
 mod forces;
 mod frame_rate;
 mod free_fall;
