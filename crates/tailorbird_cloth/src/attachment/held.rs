@@ -284,7 +284,9 @@ impl AttachedParticles {
         if held_elsewhere || self.bodies.iter().any(|body| body.jumped.is_none()) {
             return;
         }
-        let motion = motion(was, end, frame.isometry());
+        // With its entity it may have been put elsewhere already.
+        let was = was.at(frame.start_of(was.place(), end.place()));
+        let motion = motion(&was, end, frame.isometry());
         for i in 0..particles.len() {
             let ClothParticles {
                 position,

@@ -49,6 +49,11 @@ impl Pose {
         self.place
     }
 
+    /// The same elsewhere.
+    pub fn at(&self, place: Isometry3d) -> Self {
+        Self { place, ..*self }
+    }
+
     /// A part of the way to another, 0 to 1: the place moves along a straight line, and turns evenly.
     pub fn towards(&self, to: &Self, fraction: f32) -> Self {
         if self == to || fraction >= 1.0 {
