@@ -1,6 +1,8 @@
 //! Whatever the triangles, a cloth of them is refused with a typed error or simulated: never a panic, never a number that is not
 //! finite, and never a hang.
 
+#![cfg(test)]
+
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
