@@ -82,7 +82,7 @@ struct Weight {
 
 impl ClothDrawnHolds {
     /// How far along the sheet particles move along, as a part of the side of a square of the cloth's area [-].
-    pub const REACH: f32 = 0.3;
+    pub const REACH: f32 = 0.6;
 
     /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
     /// [`ClothParticles::interpolated`].
