@@ -65,13 +65,12 @@
 //! use bevy_gltf::GltfPlugin;
 //! use tailorbird::prelude::*;
 //!
-//! # fn plugins() -> impl PluginGroup {
+//! # fn add(app: &mut App) {
 //! // In place of the one in `DefaultPlugins`: `DefaultPlugins.set(…)`.
-//! let gltf = GltfPlugin::default().add_custom_vertex_attribute("CLOTH_PIN", ATTRIBUTE_CLOTH_PIN);
-//! # PluginGroupBuilder::start::<Group>().add(gltf)
+//! app.add_plugins(
+//!     GltfPlugin::default().add_custom_vertex_attribute("CLOTH_PIN", ATTRIBUTE_CLOTH_PIN),
+//! );
 //! # }
-//! # struct Group;
-//! # impl PluginGroup for Group { fn build(self) -> PluginGroupBuilder { unreachable!() } }
 //! ```
 //!
 //! In Blender, a float attribute of the vertices named `_CLOTH_PIN` is exported when *Data › Mesh › Attributes* is ticked in the
