@@ -153,7 +153,7 @@ pub fn prepare_attachments(
                 continue;
             };
             let start = state.pose.unwrap_or(end);
-            let far = ClothCollider::TELEPORT_SPEED * step.seconds();
+            let far = ClothCollider::TELEPORT_SPEED * step.world_seconds();
             let jumped = step.running() && start.distance(&end) > far;
             let body = Body {
                 attachment,

@@ -150,7 +150,7 @@ pub fn prepare_motion(
             } else {
                 0.0
             };
-            if furthest > ClothCollider::TELEPORT_SPEED * step.seconds() {
+            if furthest > ClothCollider::TELEPORT_SPEED * step.world_seconds() {
                 motion.stay();
             }
             motion.disturbed |= furthest > WAKES;
