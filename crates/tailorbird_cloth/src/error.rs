@@ -184,6 +184,65 @@ pub enum ClothErrorKind {
         /// What was selected.
         value: String,
     },
+    /// A point of a collider's shape is not finite.
+    #[error("ClothCollider {shape} points[{index}] is {value}, must be finite")]
+    ColliderPoint {
+        /// Which shape.
+        shape: String,
+        /// The point.
+        index: usize,
+        /// Where it is.
+        value: Vec3,
+    },
+    /// An index of a triangle mesh names no position.
+    #[error(
+        "ClothCollider triangle mesh indices[{at}] is {value}, must be below the number of positions, {vertices}"
+    )]
+    ColliderIndex {
+        /// Where in the list, three for each triangle.
+        at: usize,
+        /// The index.
+        value: u32,
+        /// The number of positions.
+        vertices: usize,
+    },
+    /// A triangle mesh has no triangle with an area.
+    #[error(
+        "ClothCollider triangle mesh has {triangles} triangles, must have one with an area at least"
+    )]
+    NoColliderTriangles {
+        /// The number of triangles that were given.
+        triangles: usize,
+    },
+    /// The points of a convex hull lie in a plane, or are too few.
+    #[error("ClothCollider convex hull of {points} points has no volume, must not be flat")]
+    FlatHull {
+        /// The number of points.
+        points: usize,
+    },
+    /// Heights do not make a grid.
+    #[error(
+        "ClothCollider height field has {heights} heights in {columns} columns, must be 2 or more full rows of 2 or more"
+    )]
+    HeightField {
+        /// The number of heights.
+        heights: usize,
+        /// The number of columns.
+        columns: u32,
+    },
+    /// A compound has no parts.
+    #[error("ClothCollider compound has 0 parts, must have at least one")]
+    EmptyCompound,
+    /// The mass of a body that cloth is to push is wrong.
+    #[error("ColliderBody {field} is {value}, must be {allowed}")]
+    Body {
+        /// Which value.
+        field: String,
+        /// The value, written out.
+        value: String,
+        /// What is allowed, with the unit.
+        allowed: String,
+    },
     /// A list has the wrong number of entries.
     #[error("{field} has {value} entries, must have {allowed}")]
     Count {

@@ -54,10 +54,7 @@ pub struct ClothFrame {
 struct Taken {
     /// How the frame was turned, and how far from where the step began.
     from: (Quat, Vec3),
-    rotation: Mat3,
-    shift: Vec3,
-    /// What is not felt of the turn, in the frame's axes \[rad\].
-    carried: Vec3,
+    motion: Isometry3d,
 }
 
 impl Default for ClothFrame {
@@ -142,26 +139,37 @@ impl ClothFrame {
         }
     }
 
-    /// By how much the cloth is turned in a substep without feeling it, in the frame's axes \[rad\].
-    pub(crate) fn carried_turn(&self) -> Vec3 {
-        self.taken.map_or(Vec3::ZERO, |taken| taken.carried)
-    }
-
-    /// The way of a point during a substep, in the frame as it is \[m\], of a point that goes through the world from `start` to
-    /// `end` in this step. It begins as far from the particles as it then was.
-    pub(crate) fn way_to_frame(&self, start: Vec3, end: Vec3, fractions: (f32, f32)) -> [Vec3; 2] {
+    /// The way during a substep, in the frame as it is, of something that goes through the world from `start` to `end` in this
+    /// step. It begins as far from the particles as it then was.
+    pub(crate) fn way_to_frame(
+        &self,
+        start: Isometry3d,
+        end: Isometry3d,
+        fractions: (f32, f32),
+    ) -> [Isometry3d; 2] {
+        let start = self.start_of(start, end);
         // Differences first: they are exact where coordinates are large.
-        let first = start - Vec3::from(self.start.translation);
-        let [from, to] = [fractions.0, fractions.1].map(|f| first + f * (end - start));
-        let to_frame = |point: Vec3| self.current.rotation.inverse() * (point - self.offset);
-        let begin = match &self.taken {
-            Some(taken) => {
-                let (rotation, offset) = taken.from;
-                taken.rotation * (rotation.inverse() * (from - offset)) + taken.shift
-            }
-            None => to_frame(from),
+        let first = Vec3::from(start.translation - self.start.translation);
+        let way = Vec3::from(end.translation - start.translation);
+        let at = |fraction: f32| {
+            let rotation = if start.rotation == end.rotation {
+                end.rotation
+            } else {
+                start.rotation.slerp(end.rotation, fraction)
+            };
+            (rotation, first + fraction * way)
         };
-        [begin, to_frame(to)]
+        let into = |(turn, offset): (Quat, Vec3), (rotation, place): (Quat, Vec3)| {
+            let inverse = turn.inverse();
+            Isometry3d::new(inverse * (place - offset), inverse * rotation)
+        };
+        let now = (self.current.rotation, self.offset);
+        let begin = at(fractions.0);
+        let begin = match &self.taken {
+            Some(taken) => taken.motion * into(taken.from, begin),
+            None => into(now, begin),
+        };
+        [begin, into(now, at(fractions.1))]
     }
 
     /// Whether the frame moves during this step.
@@ -324,16 +332,11 @@ impl ClothFrame {
         let (rotation, shift) = if self.felt.is_all() {
             (rotation, shift)
         } else {
-            // The frame turns the other way than what is expressed in it.
-            let whole = -shortest(turn).to_scaled_axis();
-            let taken = Taken {
-                from,
-                rotation: Mat3::from_quat(Quat::IDENTITY.slerp(turn, self.felt.angular)),
-                shift: self.felt.linear * shift,
-                carried: (1.0 - self.felt.angular) * whole,
-            };
-            self.taken = Some(taken);
-            (taken.rotation, taken.shift)
+            let turn = Quat::IDENTITY.slerp(turn, self.felt.angular);
+            let shift = self.felt.linear * shift;
+            let motion = Isometry3d::new(shift, turn);
+            self.taken = Some(Taken { from, motion });
+            (Mat3::from_quat(turn), shift)
         };
         rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
         rigid::rotate(rotation, lost_displacement);

@@ -68,7 +68,10 @@ pub mod prelude {
         },
         bounds::ClothBounds,
         cloth::{Cloth, ClothShape},
-        collider::{ClothCollider, ColliderShape},
+        collider::{
+            ClothCollider, ClothLayers, ClothReactions, ColliderBody, ColliderShape,
+            ExternalCollider, ExternalColliders,
+        },
         diagnostics::{ClothStepTime, Stretch},
         error::{ClothError, ClothErrorKind, ClothStatus},
         forces::ClothForces,

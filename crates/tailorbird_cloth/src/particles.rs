@@ -138,6 +138,7 @@ impl ClothParticles {
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.pins)
             + heap(&self.pulled)
+            + self.contacts.around.memory_bytes()
             + heap(&self.attached)
             + heap(&self.limited)
     }
@@ -330,6 +331,7 @@ impl ClothParticles {
     /// Notes where the step starts.
     pub(crate) fn begin_step(&mut self) {
         self.step_position.copy_from(&self.position);
+        self.contacts.around.begin_step();
     }
 
     /// Puts the particles back to where the step started, without velocity.

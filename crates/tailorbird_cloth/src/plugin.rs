@@ -15,7 +15,8 @@ use crate::{
     bounds::update_bounds,
     build::build_topology,
     collider::{
-        ClothColliders, collide_half_space, collide_sphere, find_contacts, snapshot_colliders,
+        ClothColliders, collide_capsule, collide_cuboid, collide_half_space, collide_shape,
+        collide_sphere, find_contacts, gather_reactions, snapshot_colliders,
     },
     diagnostics::{ClothStepTime, start_clock, stop_clock},
     forces::apply_forces,
@@ -65,6 +66,8 @@ impl Plugin for ClothPlugin {
             .init_resource::<ClothStep>()
             .init_resource::<ClothStepTime>()
             .init_resource::<ClothColliders>()
+            .init_resource::<ExternalColliders>()
+            .init_resource::<ClothReactions>()
             .init_resource::<Wind>()
             .init_resource::<BlowingWind>();
 
@@ -124,6 +127,7 @@ impl Plugin for ClothPlugin {
             (
                 simulate_cloths.run_if(step_is_whole),
                 run_substeps.run_if(step_runs.and_then(not(step_is_whole))),
+                gather_reactions,
             )
                 .chain(),
         );
@@ -168,7 +172,14 @@ impl Plugin for ClothPlugin {
                         .in_set(ClothSubstepSystems::Integrate),
                     find_contacts.in_set(ClothSubstepSystems::Approach),
                     solve_constraints.in_set(ClothSubstepSystems::Solve),
-                    (collide_sphere, collide_half_space, calm_knots)
+                    (
+                        collide_sphere,
+                        collide_half_space,
+                        collide_capsule,
+                        collide_cuboid,
+                        collide_shape,
+                        calm_knots,
+                    )
                         .chain()
                         .in_set(ClothSubstepSystems::Collide),
                 ),
@@ -224,6 +235,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothNormals>()
         .register_type::<ClothBounds>()
         .register_type::<ClothCollider>()
+        .register_type::<ClothLayers>()
         .register_type::<crate::collider::ColliderPose>()
         .register_type::<ClothSettings>()
         .register_type::<ClothStep>()

@@ -10,7 +10,7 @@ use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
-    collider::ClothColliders,
+    collider::{ClothColliders, ClothLayers},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     forces::ClothForces,
     frame::ClothFrame,
@@ -143,13 +143,13 @@ fn around(
     step: &ClothStep,
     wind: &BlowingWind,
     colliders: &ClothColliders,
-    frame: &ClothFrame,
-    bounds: &ClothBounds,
+    (frame, bounds): (&ClothFrame, &ClothBounds),
+    layers: Option<&ClothLayers>,
     material: &ClothMaterial,
 ) -> Around {
     let mut hasher = DefaultHasher::new();
     let room = ROOM + material.margin().max(0.0);
-    for collider in colliders.near(frame, bounds, room) {
+    for collider in colliders.near(frame, bounds, layers.copied().unwrap_or_default(), room) {
         collider.hash(&mut hasher);
     }
     Around {
@@ -183,14 +183,14 @@ pub fn wake_cloths(
                 &AttachedParticles,
                 Option<&MotionState>,
             ),
-            (&ClothFrame, &ClothBounds),
+            (&ClothFrame, &ClothBounds, Option<&ClothLayers>),
             &mut ClothStatus,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut rest, settings, acting, (frame, bounds), mut status) in &mut cloths {
+    for (entity, mut rest, settings, acting, (frame, bounds, layers), mut status) in &mut cloths {
         let (grab, forces, attached, motion) = acting;
         let (sleep, pins, material, solver, topology) = settings;
         if sleep.is_changed() {
@@ -208,7 +208,7 @@ pub fn wake_cloths(
             || attached.is_disturbed()
             || motion.is_some_and(MotionState::is_disturbed);
         let other = |asleep: Asleep| {
-            asleep.around != around(&step, &wind, &colliders, frame, bounds, &material)
+            asleep.around != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
         };
         let disturbed = changed || pulled || rest.asleep.is_some_and(other);
         if disturbed && *rest != ClothRest::default() {
@@ -253,8 +253,8 @@ impl ClothStagesItem<'_, '_> {
                 step,
                 wind,
                 colliders,
-                &self.frame,
-                &self.bounds,
+                (&self.frame, &self.bounds),
+                self.layers,
                 self.material,
             );
             self.rest.asleep = Some(Asleep {

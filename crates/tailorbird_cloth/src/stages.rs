@@ -8,7 +8,7 @@ use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
-    collider::ClothColliders,
+    collider::{ClothColliders, ClothLayers},
     crew::Crew,
     error::ClothStatus,
     frame::ClothFrame,
@@ -67,6 +67,7 @@ pub struct ClothStages {
     pub(crate) shading: &'static ClothShading,
     pub(crate) sleep: &'static ClothSleep,
     pub(crate) tethers: &'static ClothTethers,
+    pub(crate) layers: Option<&'static ClothLayers>,
     pub(crate) attached: &'static mut AttachedParticles,
     pub(crate) motion: Option<&'static MotionState>,
     pub(crate) pin_forces: Option<&'static mut ClothPinForces>,
@@ -85,8 +86,7 @@ impl ClothStagesItem<'_, '_> {
         solver::integrate(substep, self);
         colliders.approach(substep, self);
         solver::solve(substep, self);
-        colliders.collide_spheres(substep, self);
-        colliders.collide_half_spaces(substep, self);
+        colliders.collide_all(substep, self);
         solver::calm(substep, self);
     }
     /// Moves the frame on by one substep, and with it what is held by others.

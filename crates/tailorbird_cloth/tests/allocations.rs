@@ -14,7 +14,7 @@ mod scene;
 
 use bevy_app::FixedUpdate;
 use bevy_ecs::prelude::*;
-use bevy_math::{UVec2, Vec3};
+use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use scene::{Scene, Sheet};
 use tailorbird_cloth::prelude::*;
@@ -133,4 +133,133 @@ fn cloth_adds_no_allocation_to_an_update() {
         with < with_a_system + u64::from(STEPS),
         "held: {with}, not {with_a_system}"
     );
+
+    for (substeps, solver) in [
+        (1, ClothSolver::Chains),
+        (16, ClothSolver::Chains),
+        (4, ClothSolver::GaussSeidel),
+    ] {
+        let mut among = among_colliders(substeps);
+        among
+            .app
+            .world_mut()
+            .entity_mut(among.entity)
+            .insert(solver);
+        let with = allocations(&mut among);
+        println!("among colliders, {substeps} substeps of {solver:?}: {with}");
+        let pushed = among
+            .app
+            .world()
+            .resource::<ClothReactions>()
+            .iter()
+            .count();
+        assert!(pushed > 5, "{pushed} bodies are pushed");
+        assert!(
+            with < with_a_system + u64::from(STEPS),
+            "among colliders, {substeps} substeps of {solver:?}: {with}, not {with_a_system}"
+        );
+    }
+}
+
+/// Every kind of collider, each once that stands and once that moves about.
+fn kinds() -> Vec<ClothCollider> {
+    let ball = ColliderShape::Sphere { radius: 0.1 };
+    let capsule = ColliderShape::Capsule {
+        radius: 0.05,
+        half_length: 0.1,
+    };
+    let aside = Isometry3d::new(Vec3::X * 0.1, Quat::from_rotation_z(1.0));
+    let corners: Vec<Vec3> = (0..8)
+        .map(|k| 0.2 * Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) - 0.1)
+        .collect();
+    let wave = |k: u32| 0.02 * (k as f32).sin();
+    let heights = (0..25).map(wave).collect();
+    let hills =
+        |k: u32| Vec3::new((k % 9) as f32 - 4.0, wave(k) * 20.0, (k / 9) as f32 - 4.0) * 0.04;
+    let cells = (0..72u32).filter(|k| k % 9 < 8);
+    let triangles: Vec<[u32; 3]> = cells
+        .flat_map(|k| [[k, k + 9, k + 1], [k + 1, k + 9, k + 10]])
+        .collect();
+    vec![
+        ClothCollider::sphere(0.15),
+        ClothCollider::capsule(0.1, 0.2),
+        ClothCollider::tapered_capsule(0.1, 0.05, 0.2),
+        ClothCollider::cuboid(0.3, 0.2, 0.3),
+        ClothCollider::cylinder(0.1, 0.2),
+        ClothCollider::convex_hull(&corners).expect("a cube"),
+        ClothCollider::height_field(heights, 5, Vec2::splat(0.3)).expect("terrain"),
+        ClothCollider::trimesh((0..81).map(hills).collect::<Vec<_>>(), triangles).expect("a mesh"),
+        ClothCollider::compound([(aside, ball), (Isometry3d::IDENTITY, capsule)]).expect("two"),
+    ]
+}
+
+/// A sheet that lies on the ground among colliders of every kind that turn and shake, and as many bodies.
+fn among_colliders(substeps: u32) -> Sheet {
+    let mut sheet = Sheet::new(&Scene {
+        substeps: Some(substeps),
+        resolution: UVec2::splat(40),
+        ..Scene::default()
+    });
+    let up = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let world = sheet.app.world_mut();
+    let ground = Transform::from_xyz(0.0, 0.0, -0.4).with_rotation(up);
+    world.spawn((ClothCollider::half_space(), ground));
+    let place = |k: usize| {
+        let (column, row) = (k % 5, k / 5);
+        Vec3::new(0.4 * column as f32 - 0.8, 0.4 * row as f32 - 0.8, -0.3)
+    };
+    let mut moving = Vec::new();
+    for (k, collider) in kinds().into_iter().enumerate() {
+        let at = Transform::from_translation(place(k)).with_rotation(up);
+        world.spawn((collider.clone(), at));
+        moving.push(
+            world
+                .spawn((
+                    collider,
+                    Transform::from_translation(place(k + 9)).with_rotation(up),
+                ))
+                .id(),
+        );
+    }
+    // More than a sort does without memory.
+    let bodies: Vec<_> = (0..40).map(|_| world.spawn_empty().id()).collect();
+    let shapes: Vec<_> = kinds().into_iter().map(|kind| kind.shape).collect();
+    let mut time = 0.0f32;
+    sheet.app.add_systems(
+        FixedUpdate,
+        move |mut places: Query<&mut Transform>, mut external: ResMut<ExternalColliders>| {
+            time += 1.0 / 60.0;
+            for (k, entity) in moving.iter().enumerate() {
+                if let Ok(mut at) = places.get_mut(*entity) {
+                    at.translation = place(k + 9) + 0.03 * (7.0 * time).sin();
+                    at.rotation = up * Quat::from_rotation_y(3.0 * time);
+                }
+            }
+            for (k, body) in bodies.iter().enumerate() {
+                let at = |time: f32| {
+                    let shake = 0.02 * (5.0 * time + k as f32).sin();
+                    Isometry3d::new(0.9 * place(k % 25) + Vec3::new(0.1, 0.1, shake), up)
+                };
+                external.push(ExternalCollider {
+                    entity: *body,
+                    part: 0,
+                    shape: shapes[k % shapes.len()].clone(),
+                    friction: 0.5,
+                    margin: 0.0,
+                    layers: ClothLayers::ALL,
+                    start: at(time - 1.0 / 60.0),
+                    end: at(time),
+                    body: Some(ColliderBody {
+                        body: *body,
+                        inv_mass: 2.0,
+                        inv_inertia: Mat3::IDENTITY * 100.0,
+                        center_of_mass: at(time).translation.into(),
+                        linear_velocity: Vec3::ZERO,
+                        angular_velocity: Vec3::ZERO,
+                    }),
+                });
+            }
+        },
+    );
+    sheet
 }

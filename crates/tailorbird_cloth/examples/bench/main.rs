@@ -4,10 +4,11 @@
 //! cargo run --release -p tailorbird_cloth --example bench -- hang --size 64 --json hang.json
 //! ```
 //!
-//! 5 s at 60 Hz each; `kernels` measures each kernel by itself. Prints a table; `--json` writes the same figures as an array,
-//! which `benches/peers` can draw (but for `kernels`). `--help` lists the rest.
+//! 5 s at 60 Hz each; `kernels` measures each kernel by itself, `colliders` what each shape costs. Prints a table; `--json` writes the same figures as an array,
+//! which `benches/peers` can draw (but for `kernels` and `colliders`). `--help` lists the rest.
 
 mod cli;
+mod colliders;
 mod kernels;
 mod machine;
 mod measure;
@@ -40,6 +41,13 @@ fn run(args: &Args) -> io::Result<()> {
         let records = kernels::run(args);
         if let Some(file) = file {
             serde_json::to_writer_pretty(file, &records)?;
+        }
+        return Ok(());
+    }
+    if args.what == What::Colliders {
+        let colliders = colliders::run(args);
+        if let Some(file) = file {
+            serde_json::to_writer_pretty(file, &serde_json::json!({ "colliders": colliders }))?;
         }
         return Ok(());
     }

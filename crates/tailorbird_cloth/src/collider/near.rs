@@ -1,11 +1,181 @@
-//! Which colliders are near a cloth.
+//! Which colliders are near a cloth, and which blocks of its particles are near a collider.
 
-use std::hash::Hash;
+use std::{hash::Hash, ops::Range};
 
 use bevy_math::{Isometry3d, Vec3};
+use fearless_simd::Level;
 
-use super::{ClothColliders, ColliderShape, MovingCollider};
-use crate::{bounds::ClothBounds, frame::ClothFrame};
+use super::{
+    ClothColliders, ClothLayers,
+    bodies::{Bodies, Coupling},
+    sight::Sight,
+    snapshot::MovingCollider,
+    solid::{Solid, swept},
+};
+use crate::{
+    bounds::ClothBounds, frame::ClothFrame, points::Points, solver::kernels::range::bounds,
+};
+
+/// Particles of a block.
+const BLOCK: usize = 128;
+
+/// How much room the list of colliders near a cloth leaves it to move \[m\].
+const ROOM: f32 = 0.5;
+
+/// Room around a collider for contacts that have just ended \[m\].
+pub(super) const LEAVING: f32 = 0.01;
+
+/// What a cloth knows of the colliders around it; scratch of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Around {
+    /// Those that are near, as places in the list of colliders.
+    pub near: Vec<usize>,
+    /// Where the list holds, in the world \[m\].
+    holds: Option<(Vec3, Vec3)>,
+    /// The stage that the boxes of blocks were found in: which substep, and whether its constraints are solved.
+    stage: Option<(u32, bool)>,
+    /// The boxes of the blocks of particles, now and at the start of the substep, in the cloth's frame \[m\].
+    blocks: Vec<(Vec3, Vec3)>,
+    /// The bodies as this cloth has moved them.
+    pub bodies: Bodies,
+    /// The particles that carry parts of bodies; those of each collider side by side.
+    pub couplings: Vec<Coupling>,
+    /// What particles see of meshes.
+    pub sights: Vec<Sight>,
+    /// Particles that touch something.
+    pub found: Vec<usize>,
+}
+
+fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
+    a.0.cmple(b.1).all() && a.1.cmpge(b.0).all()
+}
+
+impl Around {
+    /// Forgets what held in the step before.
+    pub fn begin_step(&mut self) {
+        self.holds = None;
+        self.stage = None;
+        self.bodies.clear();
+    }
+
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        crate::memory::heap(&self.near)
+            + crate::memory::heap(&self.blocks)
+            + crate::memory::heap(&self.found)
+            + crate::memory::heap(&self.couplings)
+            + self.sights.iter().map(Sight::memory_bytes).sum::<usize>()
+    }
+
+    /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides their
+    /// own.
+    pub fn look(
+        &mut self,
+        colliders: &ClothColliders,
+        frame: &ClothFrame,
+        layers: ClothLayers,
+        margin: f32,
+        (level, stage): (Level, (u32, bool)),
+        [now, before]: [&Points; 2],
+    ) {
+        if self.stage == Some(stage) {
+            return;
+        }
+        self.stage = Some(stage);
+        let len = now.len();
+        self.blocks.clear();
+        let starts = (0..len).step_by(BLOCK);
+        self.blocks.extend(
+            starts.map(|start| bounds(level, [now, before], start..(start + BLOCK).min(len))),
+        );
+        let Some(all) = self.blocks.iter().copied().reduce(merge) else {
+            return;
+        };
+        let at = frame.isometry();
+        let (low, high) = swept(all, &at, &at);
+        let held = self
+            .holds
+            .is_some_and(|(min, max)| low.cmpge(min).all() && high.cmple(max).all());
+        if held {
+            return;
+        }
+        let room = Vec3::splat(ROOM);
+        let holds = (low - room, high + room);
+        self.holds = Some(holds);
+        self.near.clear();
+        for (k, collider) in colliders.colliders.iter().enumerate() {
+            // Cloth may have moved a body away from where it was to go.
+            let moved = if collider.body.is_some() { ROOM } else { 0.0 };
+            let moved = Vec3::splat(moved + margin + LEAVING);
+            let (min, max) = colliders.boxes[k];
+            if overlap(holds, (min - moved, max + moved)) && layers.interacts_with(collider.layers)
+            {
+                self.near.push(k);
+            }
+        }
+        let near = &self.near;
+        self.sights
+            .retain(|sight| near.iter().any(|k| sight.is_of(&colliders.colliders[*k])));
+    }
+
+    /// The next particles from `start` on, in whole blocks, that a solid may touch that moves like this in the cloth's frame.
+    pub fn next(
+        &self,
+        solid: &Solid,
+        [from, to]: [Isometry3d; 2],
+        margin: f32,
+        start: usize,
+        len: usize,
+    ) -> Option<Range<usize>> {
+        let room = Vec3::splat(margin + LEAVING);
+        let around = solid.range().map(|range| {
+            let (low, high) = swept(range, &from, &to);
+            (low - room, high + room)
+        });
+        let normals = [from, to].map(|at| (at.rotation * Vec3::Y, Vec3::from(at.translation)));
+        let reaches = |block: &(Vec3, Vec3)| match around {
+            Some(around) => overlap(*block, around),
+            None => normals.iter().any(|&(normal, place)| {
+                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), block.0, block.1);
+                normal.dot(lowest - place) <= room.x
+            }),
+        };
+        // The last block may be shorter than the others.
+        let next = start.div_ceil(BLOCK);
+        let blocks = self.blocks.get(next..)?;
+        let first = next + blocks.iter().position(reaches)?;
+        let count = self.blocks[first..]
+            .iter()
+            .take_while(|b| reaches(b))
+            .count();
+        Some(first * BLOCK..((first + count) * BLOCK).min(len))
+    }
+
+    /// [`Self::update`] for single particles, in their order.
+    pub fn update_each(&mut self, level: Level, points: [&Points; 2], particles: &[usize]) {
+        for block in particles.chunk_by(|a, b| a / BLOCK == b / BLOCK) {
+            self.update(level, points, block[0]..block[0] + 1);
+        }
+    }
+
+    /// Finds the boxes of blocks again of which particles were moved, where there are other colliders that need them.
+    pub fn update(&mut self, level: Level, points: [&Points; 2], range: Range<usize>) {
+        if self.near.len() < 2 {
+            return;
+        }
+        let len = points[0].len();
+        for k in range.start / BLOCK..range.end.div_ceil(BLOCK) {
+            let end = ((k + 1) * BLOCK).min(len);
+            if let Some(all) = self.blocks.get_mut(k) {
+                *all = bounds(level, points, k * BLOCK..end);
+            }
+        }
+    }
+}
 
 impl ClothColliders {
     /// What tells the colliders apart that come within `room` \[m\] of a cloth's box during this step: who, which shape, from
@@ -14,22 +184,22 @@ impl ClothColliders {
         &self,
         frame: &ClothFrame,
         bounds: &ClothBounds,
+        layers: ClothLayers,
         room: f32,
     ) -> impl Iterator<Item = impl Hash> {
-        let near = move |collider: &&MovingCollider| collider.reaches(frame, bounds, room);
+        let near = move |collider: &&MovingCollider| {
+            layers.interacts_with(collider.layers) && collider.reaches(frame, bounds, room)
+        };
         self.colliders.iter().filter(near).map(|collider| {
             let bits = |at: &Isometry3d| {
                 let [x, y, z] = at.translation.to_array();
                 let [a, b, c, d] = at.rotation.to_array();
                 [x, y, z, a, b, c, d].map(f32::to_bits)
             };
-            let radius = match collider.shape {
-                ColliderShape::Sphere { radius } => Some(radius.to_bits()),
-                ColliderShape::HalfSpace => None,
-            };
-            let friction = collider.friction.to_bits();
+            let surface = [collider.friction, collider.margin].map(f32::to_bits);
             let place = [bits(&collider.start), bits(&collider.end)];
-            (collider.entity, radius, friction, place)
+            let who = (collider.entity, collider.part);
+            (who, collider.solid.bits(), surface, place)
         })
     }
 }
@@ -37,18 +207,19 @@ impl ClothColliders {
 impl MovingCollider {
     /// Whether it may come within `room` \[m\] of a cloth's box.
     fn reaches(&self, frame: &ClothFrame, bounds: &ClothBounds, room: f32) -> bool {
-        let ends = [self.start, self.end];
-        let centers = ends.map(|at| frame.to_frame(at.translation.into()));
-        match self.shape {
-            ColliderShape::Sphere { radius } => {
-                let room = Vec3::splat(radius + room);
-                let (low, high) = (centers[0].min(centers[1]), centers[0].max(centers[1]));
-                (low - room).cmple(bounds.max).all() && (high + room).cmpge(bounds.min).all()
+        let frame = frame.isometry().inverse();
+        let [start, end] = [self.start, self.end].map(|at| frame * at);
+        let room = room + self.margin;
+        match self.solid.range() {
+            Some(range) => {
+                let (low, high) = swept(range, &start, &end);
+                let room = Vec3::splat(room);
+                overlap((low - room, high + room), (bounds.min, bounds.max))
             }
-            ColliderShape::HalfSpace => ends.iter().zip(centers).any(|(at, point)| {
-                let normal = frame.vector_to_frame(at.rotation * Vec3::Y);
+            None => [start, end].iter().any(|at| {
+                let normal = at.rotation * Vec3::Y;
                 let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.min, bounds.max);
-                normal.dot(lowest - point) <= room
+                normal.dot(lowest - Vec3::from(at.translation)) <= room
             }),
         }
     }

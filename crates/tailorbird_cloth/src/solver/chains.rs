@@ -108,6 +108,10 @@ impl Pass<'_> {
         }
         let all = particles.len();
         let (level, crew) = (self.level, self.crew);
+        for coupling in &mut particles.contacts.around.couplings {
+            let place = particles.position.get(coupling.particle);
+            coupling.held += coupling.normal.dot(place);
+        }
         match tethers.anchors(&particles.position) {
             Anchors::Straight(tethers) => {
                 if let Some(lattice) = &topology.lattice {
@@ -124,6 +128,10 @@ impl Pass<'_> {
                     tether::solve(level, sheet, &tethers, slack, range);
                 });
             }
+        }
+        for coupling in &mut particles.contacts.around.couplings {
+            let place = particles.position.get(coupling.particle);
+            coupling.held -= coupling.normal.dot(place);
         }
         self.bend(topology, particles);
         if let Some(lattice) = &topology.lattice {
@@ -193,6 +201,7 @@ pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParti
             position: SharedPoints::new(position),
             inv_mass: Shared::new(inv_mass),
             normal: None,
+            pressed: None,
         };
         let previous = SharedPoints::new(previous_position);
         squeeze::stop(level, sheet, previous, lattice.spacing, whole);
@@ -228,6 +237,7 @@ fn sheet(particles: &mut ClothParticles, [columns, rows]: [usize; 2]) -> Sheet<'
         normal: contacts
             .any
             .then(|| SharedPoints::new(&mut contacts.normal)),
+        pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
     }
 }
 
@@ -270,6 +280,7 @@ pub(crate) fn integrate(
                 position: SharedPoints::new(position),
                 inv_mass: Shared::new(inv_mass),
                 normal: None,
+                pressed: None,
             },
             previous: SharedPoints::new(previous_position),
             lost: SharedPoints::new(lost_displacement),

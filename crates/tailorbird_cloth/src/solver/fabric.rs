@@ -31,6 +31,7 @@ impl Pass<'_> {
             normal: contacts
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
+            pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
         };
         let passes = &fabric.chains().passes;
         for k in 0..passes.len() {

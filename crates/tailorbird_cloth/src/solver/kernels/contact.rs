@@ -10,7 +10,7 @@ use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::lanes::{Factor, Shared, SharedPoints, V3, Window};
-use crate::{numbers::Numbers, points::Points};
+use crate::{collider::near::Around, numbers::Numbers, points::Points};
 
 /// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
 #[derive(Clone, Copy, Debug)]
@@ -52,17 +52,40 @@ impl Path {
 /// The contacts of a cloth's particles, noted before its constraints are solved.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
-    /// Unit normals, 0 without contact.
+    /// Unit normals, 0 without contact; shorter where a particle carries a part of a body.
     pub normal: Points,
     /// How far a particle was pushed out \[m\].
     pub depth: Numbers,
+    /// By how much the constraints push particles along their normals \[N s\] · substep; empty where no particle carries a part of a
+    /// body.
+    pub pressed: Numbers,
     /// Whether there are any.
     pub any: bool,
+    /// What is known of the colliders around.
+    pub around: Around,
 }
 
 impl Contacts {
+    /// Forgets all contacts, and that there are any.
+    pub fn clear(&mut self) {
+        for values in [
+            &mut self.normal.x,
+            &mut self.normal.y,
+            &mut self.normal.z,
+            &mut self.depth,
+            &mut self.pressed,
+        ] {
+            values.clear();
+        }
+        self.any = false;
+        self.around.couplings.clear();
+    }
+
     /// Forgets all contacts of `len` particles.
     pub fn reset(&mut self, len: usize) {
+        if !self.any && self.depth.len() == len {
+            return;
+        }
         for values in [
             &mut self.normal.x,
             &mut self.normal.y,
@@ -173,6 +196,12 @@ impl<S: Simd> Known<S> {
         let reach = radius + self.depth;
         let same = to.dot(self.normal).simd_gt(radius * 0.7);
         self.depth.simd_gt(zero) & same & to.dot(to).simd_lt(reach * reach)
+    }
+
+    /// Which particles were in contact with something, and are no further above a surface than they were below.
+    #[inline(always)]
+    pub fn within(self, simd: S, height: S::f32s) -> S::mask32s {
+        self.depth.simd_gt(S::f32s::splat(simd, 0.0)) & height.simd_lt(self.depth)
     }
 
     /// Which particles were in contact with a surface of this normal, and are no further above it than they were below.

@@ -174,6 +174,16 @@ impl Window {
         }
     }
 
+    /// One element.
+    #[inline(always)]
+    pub fn single(at: usize) -> Self {
+        Self {
+            at,
+            done: 0,
+            short: 1,
+        }
+    }
+
     /// The last elements of a range, of which `left` are still to be done: less than a vector.
     #[inline(always)]
     fn last<S: Simd>(_simd: S, range: &Range<usize>, left: usize) -> Self {

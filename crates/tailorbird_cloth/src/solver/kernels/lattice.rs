@@ -9,7 +9,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
-    line::{self, Edge, LineStiffness, Lines},
+    line::{self, Edge, FREE, LineStiffness, Lines, PRESSED, TOUCHING},
 };
 
 /// Particles of a sheet, in row-major order.
@@ -21,6 +21,8 @@ pub(crate) struct Sheet<'a> {
     pub inv_mass: Shared<'a>,
     /// Unit normals of contacts, 0 where there is none; empty where nothing is in contact.
     pub normal: Option<SharedPoints<'a>>,
+    /// Where what pushes particles along their normals is added up.
+    pub pressed: Option<Shared<'a>>,
 }
 
 impl Sheet<'_> {
@@ -33,13 +35,43 @@ impl Sheet<'_> {
         let n = self.columns * self.rows;
         let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
         assert!(
-            points(self.position) && self.inv_mass.len() == n && self.normal.is_none_or(points),
+            points(self.position)
+                && self.inv_mass.len() == n
+                && self.normal.is_none_or(points)
+                && self.pressed.is_none_or(|pressed| pressed.len() == n),
             "a sheet of {} x {} particles",
             self.columns,
             self.rows
         );
     }
 }
+
+/// Calls a kernel with two instruction sets alone: sheets that carry bodies are few, and each takes long to compile.
+macro_rules! for_bodies {
+    ($level:expr, $simd:ident => $do:expr) => {{
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let level = $level.as_avx2().map_or(Level::fallback(), Level::Avx2);
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let level = $level;
+        match level {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $do,
+            ),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $do,
+            ),
+            _ => {
+                let $simd = fearless_simd::Fallback::new();
+                $do
+            }
+        }
+    }};
+}
+pub(super) use for_bodies;
 
 /// Solves each column of a range.
 pub(crate) fn solve_columns(
@@ -49,13 +81,17 @@ pub(crate) fn solve_columns(
     columns: Range<usize>,
 ) {
     sheet.check();
-    with_scratch(sheet.rows * WIDEST * 9, |scratch| {
-        dispatch!(level, simd => solve_columns_with(simd, sheet, stiffness, columns, scratch));
+    with_scratch(sheet.rows * WIDEST * 10, |scratch| {
+        if sheet.pressed.is_some() {
+            for_bodies!(level, simd => solve_columns_with::<_, true>(simd, sheet, stiffness, columns, scratch));
+        } else {
+            dispatch!(level, simd => solve_columns_with::<_, false>(simd, sheet, stiffness, columns, scratch));
+        }
     });
 }
 
 #[inline(always)]
-fn solve_columns_with<S: Simd>(
+fn solve_columns_with<S: Simd, const BODIES: bool>(
     simd: S,
     sheet: Sheet,
     stiffness: LineStiffness,
@@ -71,6 +107,7 @@ fn solve_columns_with<S: Simd>(
         position: sheet.position,
         inv_mass: sheet.inv_mass,
         normal: sheet.normal.unwrap_or(sheet.position),
+        pressed: sheet.pressed.unwrap_or(sheet.inv_mass),
         bent: block.position,
         offset: columns.start,
         stride: sheet.columns,
@@ -78,7 +115,7 @@ fn solve_columns_with<S: Simd>(
     };
     let of_lines = |first| stiffness.of_lines(simd, first, sheet.columns);
     while lines.offset + n <= columns.end {
-        solve_block(simd, lines, of_lines(lines.offset), contact, factors);
+        solve_block::<S, BODIES>(simd, lines, of_lines(lines.offset), contact, factors);
         lines.offset += n;
     }
     let count = columns.end - lines.offset;
@@ -96,26 +133,38 @@ fn solve_columns_with<S: Simd>(
             let normal: V3<S> = normal.load_at(simd, window, from);
             block.normal.store(k * n, normal);
         }
+        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+            let sum = pressed.load_at(simd, window, from);
+            block.pressed.store::<S>(k * n, sum);
+        }
     }
     let stiffness = of_lines(lines.offset);
-    solve_block(simd, block.lines(m, n), stiffness, contact, factors);
+    solve_block::<S, BODIES>(simd, block.lines(m, n), stiffness, contact, factors);
     for k in 0..m {
         let p: V3<S> = block.position.load(simd, k * n);
         let to = lines.offset + k * sheet.columns;
         sheet.position.store_at(simd, window, to, p);
+        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+            let sum = block.pressed.load(simd, k * n);
+            pressed.store_at::<S>(simd, window, to, sum);
+        }
     }
 }
 
 /// Solves each row of a range.
 pub(crate) fn solve_rows(level: Level, sheet: Sheet, stiffness: LineStiffness, rows: Range<usize>) {
     sheet.check();
-    with_scratch(sheet.columns * WIDEST * 9, |scratch| {
-        dispatch!(level, simd => solve_rows_with(simd, sheet, stiffness, rows, scratch));
+    with_scratch(sheet.columns * WIDEST * 10, |scratch| {
+        if sheet.pressed.is_some() {
+            for_bodies!(level, simd => solve_rows_with::<_, true>(simd, sheet, stiffness, rows, scratch));
+        } else {
+            dispatch!(level, simd => solve_rows_with::<_, false>(simd, sheet, stiffness, rows, scratch));
+        }
     });
 }
 
 #[inline(always)]
-fn solve_rows_with<S: Simd>(
+fn solve_rows_with<S: Simd, const BODIES: bool>(
     simd: S,
     sheet: Sheet,
     stiffness: LineStiffness,
@@ -143,17 +192,23 @@ fn solve_rows_with<S: Simd>(
             tile.load(simd, normal.y, block.normal.y);
             tile.load(simd, normal.z, block.normal.z);
         }
+        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+            tile.load(simd, pressed, block.pressed);
+        }
         let stiffness = stiffness.of_lines(simd, row, sheet.rows);
-        solve_block(simd, block.lines(m, n), stiffness, contact, factors);
+        solve_block::<S, BODIES>(simd, block.lines(m, n), stiffness, contact, factors);
         tile.store(simd, block.position.x, sheet.position.x);
         tile.store(simd, block.position.y, sheet.position.y);
         tile.store(simd, block.position.z, sheet.position.z);
+        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+            tile.store(simd, block.pressed, pressed);
+        }
         row += tile.rows;
     }
 }
 
 #[inline(always)]
-fn solve_block<S: Simd>(
+fn solve_block<S: Simd, const BODIES: bool>(
     simd: S,
     lines: Lines,
     (edge, bend): (Edge<S>, S::f32s),
@@ -163,10 +218,12 @@ fn solve_block<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            if contact {
-                line::solve::<S, _, true, true>(simd, lines, edge, bend, factors);
+            if BODIES {
+                line::solve::<S, _, true, PRESSED>(simd, lines, edge, bend, factors);
+            } else if contact {
+                line::solve::<S, _, true, TOUCHING>(simd, lines, edge, bend, factors);
             } else {
-                line::solve::<S, _, true, false>(simd, lines, edge, bend, factors);
+                line::solve::<S, _, true, FREE>(simd, lines, edge, bend, factors);
             }
         },
     );
@@ -177,12 +234,13 @@ pub(super) struct Block<'a> {
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
     pub normal: SharedPoints<'a>,
+    pub pressed: Shared<'a>,
 }
 
 impl<'a> Block<'a> {
     #[inline(always)]
     pub fn new(scratch: &'a mut [f32], len: usize, width: usize) -> Self {
-        let (mut parts, _) = scratch.split_at_mut(7 * len * width);
+        let (mut parts, _) = scratch.split_at_mut(8 * len * width);
         let mut next = || {
             let (part, rest) = std::mem::take(&mut parts).split_at_mut(len * width);
             parts = rest;
@@ -198,6 +256,7 @@ impl<'a> Block<'a> {
             position,
             normal,
             inv_mass: next(),
+            pressed: next(),
         }
     }
 
@@ -207,6 +266,7 @@ impl<'a> Block<'a> {
             position: self.position,
             inv_mass: self.inv_mass,
             normal: self.normal,
+            pressed: self.pressed,
             bent: self.position,
             offset: 0,
             stride: width,

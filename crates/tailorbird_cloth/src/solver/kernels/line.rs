@@ -18,7 +18,7 @@
 //! compression; compliance has a relative floor, as a straight chain that is held at both ends is singular.
 //!
 //! A particle in contact moves along the surface alone: its inverse mass is w (I − n nᵀ), n being the contact's unit normal and
-//! 0 where there is none.
+//! 0 where there is none. One that carries a part of a body has a normal shorter than 1, and moves the less along it.
 //!
 //! With `BEND`, the triples k, k+1, k+2 resist bending on the way: D = x_k − 2 x_{k+1} + x_{k+2} is pulled towards 0, by
 //! Δx = ∓w D/max(α̃ + W/2, W) with W = w_k + 4 w_{k+1} + w_{k+2}. The sum α̃ + W of position-based dynamics would be too soft at
@@ -43,13 +43,22 @@ const LEAST_PIVOT: f32 = 0.05;
 /// that hangs stretches half as much again.
 const LEAST_COMPLIANCE: f32 = 5e-4;
 
+/// No particle is in contact.
+pub(crate) const FREE: u8 = 0;
+/// Some move along surfaces.
+pub(crate) const TOUCHING: u8 = 1;
+/// Some do, and carry parts of bodies: what pushes them is added up.
+pub(crate) const PRESSED: u8 = 2;
+
 /// Where the chains lie.
 #[derive(Clone, Copy)]
 pub(crate) struct Lines<'a> {
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
-    /// Unit normals of contacts, 0 where there is none; read with `CONTACT` alone.
+    /// Unit normals of contacts, 0 where there is none; read where some are in contact alone.
     pub normal: SharedPoints<'a>,
+    /// Where what pushes particles along their normals is added up; read and written with [`PRESSED`] alone.
+    pub pressed: Shared<'a>,
     /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
     /// lies like this as well.
     pub bent: SharedPoints<'a>,
@@ -195,7 +204,7 @@ struct Sweep<'a, S: Simd, E> {
 /// One vector at a time: with two, whose divisions could fill the gaps of one another, the state no longer fits the registers,
 /// and a quarter of the speed is lost (AVX-512).
 #[inline(always)]
-pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: bool>(
+pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     edges: E,
@@ -219,7 +228,7 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: bool>
 
 impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
     #[inline(always)]
-    fn start<const BEND: bool, const CONTACT: bool>(
+    fn start<const BEND: bool, const CONTACT: u8>(
         simd: S,
         lines: Lines<'a>,
         edges: E,
@@ -248,7 +257,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
             inv_pivot: zero,
             g: zero,
         };
-        if CONTACT {
+        if CONTACT != FREE {
             s.n_a = lines.normal(simd, 0);
         }
         if BEND && lines.len > 2 {
@@ -264,7 +273,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 
     /// Bends the triple from e + 1 on, if there is one (`TRIPLE`), and eliminates the edge e.
     #[inline(always)]
-    fn advance<const BEND: bool, const CONTACT: bool, const TRIPLE: bool>(&mut self, e: usize) {
+    fn advance<const BEND: bool, const CONTACT: u8, const TRIPLE: bool>(&mut self, e: usize) {
         let s = self;
         let (simd, lines) = (s.simd, s.lines);
         let (mut next, mut w_next) = (s.c, s.w_c);
@@ -288,7 +297,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         let stretch = alpha.max(w * (l2 * LEAST_COMPLIANCE));
         let mut diagonal = w * q.max(quarter) + (stretch + least_w);
         let mut dd = s.d.dot(d);
-        if CONTACT {
+        if CONTACT != FREE {
             let n_b = lines.normal(simd, e + 1);
             let (along_a, along_b) = (s.n_a.dot(d), n_b.dot(d));
             diagonal = diagonal - s.w_a * along_a * along_a - s.w_b * along_b * along_b;
@@ -314,7 +323,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
 #[inline(always)]
-fn substitute<S: Simd, const CONTACT: bool>(simd: S, lines: Lines, factors: Shared) {
+fn substitute<S: Simd, const CONTACT: u8>(simd: S, lines: Lines, factors: Shared) {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
@@ -332,16 +341,21 @@ fn substitute<S: Simd, const CONTACT: bool>(simd: S, lines: Lines, factors: Shar
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.
 #[inline(always)]
-fn apply<S: Simd, const CONTACT: bool>(
+fn apply<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     i: usize,
     position: V3<S>,
     mut push: V3<S>,
 ) {
-    if CONTACT {
+    if CONTACT != FREE {
         let n: V3<S> = lines.normal.load(simd, i);
-        push = push - Factor(n.dot(push)) * n;
+        let along = n.dot(push);
+        push = push - Factor(along) * n;
+        if CONTACT == PRESSED {
+            let pressed = lines.pressed;
+            pressed.store::<S>(i, pressed.load(simd, i) + along);
+        }
     }
     let w = lines.inv_mass.load(simd, i);
     lines.position.store(i, position + Factor(w) * push);

@@ -11,8 +11,8 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
-    lattice::Block,
-    line::{self, MeshLines},
+    lattice::{Block, for_bodies},
+    line::{self, FREE, MeshLines, PRESSED, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
 };
@@ -36,6 +36,8 @@ pub(crate) struct Mesh<'a> {
     pub inv_mass: Shared<'a>,
     /// Unit normals of contacts, 0 where there is none; empty where nothing is in contact.
     pub normal: Option<SharedPoints<'a>>,
+    /// Where what pushes particles along their normals is added up.
+    pub pressed: Option<Shared<'a>>,
 }
 
 impl Mesh<'_> {
@@ -48,7 +50,10 @@ impl Mesh<'_> {
         let n = self.fabric.particles();
         let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
         assert!(
-            points(self.position) && self.inv_mass.len() == n && self.normal.is_none_or(points),
+            points(self.position)
+                && self.inv_mass.len() == n
+                && self.normal.is_none_or(points)
+                && self.pressed.is_none_or(|pressed| pressed.len() == n),
             "a mesh of {n} particles"
         );
     }
@@ -120,15 +125,19 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     mesh.check();
     let batches = &mesh.fabric.chains().batches[batches];
     let longest = batches.iter().map(|batch| batch.length).max().unwrap_or(0);
-    with_scratch(longest * WIDEST * 9, |scratch| {
+    with_scratch(longest * WIDEST * 10, |scratch| {
         for batch in batches {
-            dispatch!(level, simd => solve_batch(simd, mesh, stretch, batch, scratch));
+            if mesh.pressed.is_some() {
+                for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
+            } else {
+                dispatch!(level, simd => solve_batch::<_, false>(simd, mesh, stretch, batch, scratch));
+            }
         }
     });
 }
 
 #[inline(always)]
-fn solve_batch<S: Simd>(
+fn solve_batch<S: Simd, const BODIES: bool>(
     simd: S,
     mesh: Mesh,
     stretch: f32,
@@ -157,6 +166,9 @@ fn solve_batch<S: Simd>(
             if let Some(normal) = mesh.normal {
                 block.normal.store(k * n, lanes.load_points(simd, normal));
             }
+            if let (true, Some(pressed)) = (BODIES, mesh.pressed) {
+                block.pressed.store::<S>(k * n, lanes.load(simd, pressed));
+            }
         }
         let edges = MeshLines {
             rest_length: &chains.rest_length[start..batch.slots.end],
@@ -165,15 +177,20 @@ fn solve_batch<S: Simd>(
             stride: LANES,
         };
         let (lines, zero) = (block.lines(m, n), S::f32s::splat(simd, 0.0));
-        if mesh.normal.is_some() {
-            line::solve::<S, _, false, true>(simd, lines, edges, zero, factors);
+        if BODIES {
+            line::solve::<S, _, false, PRESSED>(simd, lines, edges, zero, factors);
+        } else if mesh.normal.is_some() {
+            line::solve::<S, _, false, TOUCHING>(simd, lines, edges, zero, factors);
         } else {
-            line::solve::<S, _, false, false>(simd, lines, edges, zero, factors);
+            line::solve::<S, _, false, FREE>(simd, lines, edges, zero, factors);
         }
         for k in 0..m {
             let moved: V3<S> = block.position.load(simd, k * n);
-            Lanes::of_link::<S>(mesh.fabric, &chains.particle, start, k)
-                .store_points(mesh.position, moved);
+            let lanes = Lanes::of_link::<S>(mesh.fabric, &chains.particle, start, k);
+            lanes.store_points(mesh.position, moved);
+            if let (true, Some(pressed)) = (BODIES, mesh.pressed) {
+                lanes.store::<S>(pressed, block.pressed.load(simd, k * n));
+            }
         }
     }
 }

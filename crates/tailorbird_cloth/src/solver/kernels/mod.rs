@@ -1,8 +1,12 @@
 //! The arithmetic: pure functions over slices, one file for each equation.
 
 pub mod aerodynamics;
+pub(crate) mod ball;
+pub(crate) mod capsule;
 pub(crate) mod cells;
 pub mod contact;
+pub(crate) mod cuboid;
+pub(crate) mod cylinder;
 pub mod distance;
 pub mod half_space;
 pub mod hinge;
@@ -15,13 +19,17 @@ pub mod normals;
 pub mod packed;
 #[cfg(test)]
 mod parity;
+pub(crate) mod patches;
+pub(crate) mod planes;
 pub mod range;
 pub mod rigid;
 pub mod rigid_motion;
 pub(crate) mod shear;
+pub mod solid;
 pub mod sphere;
 pub mod spring;
 pub(crate) mod squeeze;
+pub(crate) mod terrain;
 pub(crate) mod tether;
 pub mod times;
 pub(crate) mod vectors;

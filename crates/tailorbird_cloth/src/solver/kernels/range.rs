@@ -1,8 +1,12 @@
 //! The range of coordinates, and whether they are finite.
 
+use std::ops::Range;
+
+use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{Reading, each_window};
+use super::lanes::{Reading, WIDEST, each_window};
+use crate::points::Points;
 
 /// The lowest and the highest of these numbers and of `low` and `high`; NaN does not count.
 pub fn range(level: Level, values: &[f32], (low, high): (f32, f32)) -> (f32, f32) {
@@ -27,6 +31,60 @@ fn range_with<S: Simd>(simd: S, values: &[f32], (low, high): (f32, f32)) -> (f32
     )
 }
 
+/// The box around some particles at two times.
+pub fn bounds(level: Level, times: [&Points; 2], particles: Range<usize>) -> (Vec3, Vec3) {
+    dispatch!(level, simd => bounds_with(simd, times, particles))
+}
+
+#[inline(always)]
+fn bounds_with<S: Simd>(
+    simd: S,
+    [now, before]: [&Points; 2],
+    particles: Range<usize>,
+) -> (Vec3, Vec3) {
+    let (x, y, z) = (
+        ends(simd, [&now.x, &before.x], particles.clone()),
+        ends(simd, [&now.y, &before.y], particles.clone()),
+        ends(simd, [&now.z, &before.z], particles),
+    );
+    (Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1))
+}
+
+/// The lowest and the highest of some numbers of two lists.
+#[inline(always)]
+fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
+    let (mut low, mut high) = ([f32::INFINITY; WIDEST], [f32::NEG_INFINITY; WIDEST]);
+    let (mut lowest, mut highest) = (
+        S::f32s::splat(simd, f32::INFINITY),
+        S::f32s::splat(simd, f32::NEG_INFINITY),
+    );
+    for values in lists {
+        let chunks = values[at.clone()].chunks_exact(S::f32s::LEN);
+        for (k, value) in chunks.remainder().iter().enumerate() {
+            (low[k], high[k]) = (low[k].min(*value), high[k].max(*value));
+        }
+        for chunk in chunks {
+            let values = S::f32s::from_slice(simd, chunk);
+            lowest = lowest.min(values);
+            highest = highest.max(values);
+        }
+    }
+    for k in 0..S::f32s::LEN {
+        low[k] = low[k].min(lowest.as_slice()[k]);
+        high[k] = high[k].max(highest.as_slice()[k]);
+    }
+    // By halves: one after the other would take as long as all the rest.
+    let mut half = WIDEST / 2;
+    while half > 0 {
+        for k in 0..half {
+            low[k] = low[k].min(low[k + half]);
+            high[k] = high[k].max(high[k + half]);
+        }
+        half /= 2;
+    }
+    (low[0], high[0])
+}
+
 /// Whether none of these numbers is infinite or NaN: 0 · v is 0 for finite ones alone.
 pub fn is_finite(level: Level, values: &[f32]) -> bool {
     dispatch!(level, simd => is_finite_with(simd, values))
@@ -49,6 +107,26 @@ fn is_finite_with<S: Simd>(simd: S, values: &[f32]) -> bool {
 mod tests {
     use super::*;
     use crate::solver::kernels::lanes::levels;
+
+    #[test]
+    fn a_box_is_around_all_particles_at_both_times() {
+        let point = |i: usize, seed: f32| {
+            let t = i as f32 + seed;
+            Vec3::new((2.1 * t).sin(), (3.7 * t).sin(), (5.3 * t).sin())
+        };
+        let times = [0.3, 17.0].map(|seed| (0..70).map(|i| point(i, seed)).collect::<Points>());
+        for level in levels() {
+            for start in [0, 3] {
+                for end in start + 1..70 {
+                    let all = || times.iter().flat_map(|p| (start..end).map(|i| p.get(i)));
+                    let low = all().reduce(Vec3::min).unwrap();
+                    let high = all().reduce(Vec3::max).unwrap();
+                    let [now, before] = &times;
+                    assert_eq!(bounds(level, [now, before], start..end), (low, high));
+                }
+            }
+        }
+    }
 
     #[test]
     fn finds_the_ends_and_what_is_not_finite_wherever_they_are() {

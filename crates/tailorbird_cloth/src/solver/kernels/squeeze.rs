@@ -124,6 +124,7 @@ mod tests {
                         position: SharedPoints::new(&mut position),
                         inv_mass: Shared::new(&mut inv_mass),
                         normal: None,
+                        pressed: None,
                     };
                     let whole = RigidMotion {
                         displacement: Vec3::Y,

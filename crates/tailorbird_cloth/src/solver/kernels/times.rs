@@ -127,6 +127,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         position: SharedPoints::new(&mut position),
         inv_mass: Shared::new(&mut inv_mass),
         normal: None,
+        pressed: None,
     };
     let line = LineStiffness {
         rest_length: SPACING,
@@ -203,6 +204,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             position: particles.position,
             inv_mass: particles.inv_mass,
             normal: None,
+            pressed: None,
         },
         previous: particles.previous,
         lost: SharedPoints::new(&mut lost),

@@ -185,7 +185,7 @@ fn what_cannot_be_reached_is_infinitely_far() {
     let far = f32::INFINITY;
     assert_eq!(found, [0.0, 1.0, 2.0, far, far, far, 0.0]);
     assert_eq!(which, [1, 1, 1, NONE, NONE, NONE, 1]);
-    assert_eq!(Geodesics::new(&[], &[]).distances(&[0]), []);
+    assert!(Geodesics::new(&[], &[]).distances(&[0]).is_empty());
 }
 
 #[test]
@@ -248,8 +248,8 @@ fn anchors_lie_far_from_each_other() {
     let pins: Vec<u32> = (0..11).collect();
     assert_eq!(tether_anchors(&pins, &row, 4), [0, 10, 5, 2]);
     assert_eq!(tether_anchors(&[7, 3, 99], &row, 4), [7, 3]);
-    assert_eq!(tether_anchors(&[7, 3], &row, 0), []);
-    assert_eq!(tether_anchors(&[], &row, 4), []);
+    assert!(tether_anchors(&[7, 3], &row, 0).is_empty());
+    assert!(tether_anchors(&[], &row, 4).is_empty());
     assert_eq!(tether_anchors(&[4, 4, 4, 4, 4], &row, 4), [4]);
     let square = Sheet::new(8, 8, Split::Same, 0.0, 0, Vec2::ONE).positions(flat);
     let all: Vec<u32> = (0..81).collect();

@@ -11,7 +11,7 @@ use super::{
         shear::{self, Shear},
         tether::{self, Straight, Tether},
     },
-    SIZES, State, blocks, same,
+    SIZES, State, blocks, levels, same,
 };
 use crate::{
     cloth::Cloth,
@@ -21,14 +21,15 @@ use crate::{
 #[test]
 fn lines() {
     for size in SIZES {
-        for contact in [false, true] {
+        for (contact, bodies) in [(false, false), (true, false), (true, true)] {
             for bend in [0.3, f32::INFINITY] {
                 let line = LineStiffness {
                     rest_length: 1.0,
                     stretch: 0.01,
                     bend,
                 };
-                let start = State::sheet(size);
+                let mut start = State::sheet(size);
+                start.bodies = bodies;
                 same(&start, |level, state, cuts| {
                     let columns = blocks(state.columns, cuts);
                     state.with_sheet(contact, |sheet| {
@@ -48,6 +49,33 @@ fn lines() {
             }
         }
     }
+}
+
+/// What lines push particles with that carry a part of a body is all there: with what is told of it, momentum is kept.
+#[test]
+fn lines_tell_what_they_press() {
+    let line = LineStiffness {
+        rest_length: 1.0,
+        stretch: 0.01,
+        bend: f32::INFINITY,
+    };
+    let mut state = State::sheet([19, 17]);
+    state.bodies = true;
+    state.inv_mass = state.inv_mass.iter().map(|w| w.max(0.5)).collect();
+    let before = state.clone();
+    state.with_sheet(true, |sheet| {
+        for level in levels() {
+            lattice::solve_columns(level, sheet, line, 0..19);
+            lattice::solve_rows(level, sheet, line, 0..17);
+        }
+    });
+    let (mut left, mut pressed) = (Vec3::ZERO, Vec3::ZERO);
+    for (i, w) in state.inv_mass.iter().enumerate() {
+        left += (state.position.get(i) - before.position.get(i)) / *w;
+        pressed += state.normal.get(i) * state.pressed[i];
+    }
+    assert!(pressed.length() > 0.1, "nothing is pressed: {pressed}");
+    assert!((left + pressed).length() < 1e-3, "{left} and {pressed}");
 }
 
 #[test]
@@ -132,13 +160,14 @@ fn chains_of_a_mesh() {
     let fabric = topology.fabric.as_ref().expect("no grid");
     let rest = topology.rest_positions.iter().map(|p| *p * 20.0);
     let start = State::new([topology.particles(), 1], rest);
-    for contact in [false, true] {
+    for (contact, bodies) in [(false, false), (true, false), (true, true)] {
         same(&start, |level, state, _| {
             let mesh = Mesh {
                 fabric,
                 position: SharedPoints::new(&mut state.position),
                 inv_mass: Shared::new(&mut state.inv_mass),
                 normal: contact.then(|| SharedPoints::new(&mut state.normal)),
+                pressed: bodies.then(|| Shared::new(&mut state.pressed)),
             };
             for pass in &fabric.chains().passes {
                 mesh::solve_chains(level, mesh, 0.01, pass.batches.clone());

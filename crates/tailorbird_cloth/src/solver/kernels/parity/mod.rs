@@ -30,6 +30,9 @@ struct State {
     inv_mass: Numbers,
     normal: Points,
     depth: Numbers,
+    pressed: Numbers,
+    /// Whether some particles carry parts of bodies.
+    bodies: bool,
 }
 
 fn noise(len: usize, seed: u64, size: f32) -> Points {
@@ -64,7 +67,8 @@ impl State {
         let normal = (0..n).map(|i| {
             let touching = i % 3 == 1;
             if touching {
-                normal.get(i).normalize_or(Vec3::Z)
+                // Some carry a part of a body.
+                normal.get(i).normalize_or(Vec3::Z) * if i % 2 == 0 { 0.8 } else { 1.0 }
             } else {
                 Vec3::ZERO
             }
@@ -87,6 +91,8 @@ impl State {
             depth: (0..n)
                 .map(|i| if i % 3 == 1 { 0.05 } else { 0.0 })
                 .collect(),
+            pressed: (0..n).map(|_| 0.0).collect(),
+            bodies: false,
         }
     }
 
@@ -97,6 +103,7 @@ impl State {
             position: SharedPoints::new(&mut self.position),
             inv_mass: Shared::new(&mut self.inv_mass),
             normal: contact.then(|| SharedPoints::new(&mut self.normal)),
+            pressed: (contact && self.bodies).then(|| Shared::new(&mut self.pressed)),
         });
     }
 
@@ -104,7 +111,7 @@ impl State {
     fn bits(&self) -> Vec<u32> {
         let points = [&self.position, &self.previous, &self.lost, &self.normal];
         let numbers = points.into_iter().flat_map(|p| [&p.x, &p.y, &p.z]);
-        let all = numbers.chain([&self.depth]).flatten();
+        let all = numbers.chain([&self.depth, &self.pressed]).flatten();
         all.map(|v| v.to_bits()).collect()
     }
 }

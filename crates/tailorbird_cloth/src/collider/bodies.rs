@@ -1,0 +1,264 @@
+//! Bodies that cloth pushes.
+//!
+//! Within a step each cloth moves bodies by itself, in two ways, and what one of the two gets the other loses, in linear and in
+//! angular momentum.
+//!
+//! **Impacts**, before and after the constraints are solved: a contact is an inelastic impact of a particle of the inverse mass w on
+//! a point of a body, whose inverse mass is W = 1/m + (r × n)·I⁻¹(r × n) there. The impulse λ = depth/(w + W) moves the particle
+//! by wλ and the body by Wλ the other way, so that both meet; friction and what separates them are impulses between the same
+//! two points. Impacts are taken one by one, each with the body as the one before has left it. No impact adds energy, however
+//! light the body is.
+//!
+//! **Loads**, while the constraints are solved ([`Coupling`]): a body is much heavier than a particle, so that impacts alone hand on no
+//! more than the momentum of one row of particles in a substep, and a heavy body would fall through. So each of the k particles in
+//! contact carries one k-th of the body with it where it is pushed along the contact's normal n (mass splitting, Tonge et al.
+//! 2012): its inverse mass is w (I − s n nᵀ), s = w/(w + k W). That is the form in which the lines know of contacts, with √s n
+//! for a normal. They add up what pushed each particle, and the body gets the part s of it. What would pull at the body is
+//! given to the particle alone, and what would meet nothing.
+//!
+//! In a substep each particle makes good all of what the cloth is stretched by, and the body moves by the mean: a spring between the
+//! two whose frequency is that of the substeps. Without pins it stays, so that momentum is kept; what pins pull moves the body
+//! but gives it no velocity beyond what stops it, so that it does not bounce on a spring that is none of the fabric's.
+
+use bevy_ecs::entity::Entity;
+use bevy_math::{Isometry3d, Quat, Vec3};
+
+use super::{ClothReaction, ColliderBody};
+use crate::{
+    frame::ClothFrame,
+    points::Points,
+    solver::kernels::solid::{Contact, Motion},
+    stages::Substep,
+};
+
+/// The bodies as one cloth has moved them in this step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bodies {
+    pub list: Vec<Proxy>,
+}
+
+/// What a cloth did to a body so far in this step, in world axes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Proxy {
+    pub done: ClothReaction,
+    /// Where the body was moved to and turned by at the start of the substep.
+    start: (Vec3, Vec3),
+    /// Velocities that it has got [m/s], [rad/s].
+    gained: (Vec3, Vec3),
+    pub touched: bool,
+    /// How many particles are coupled with it.
+    pub coupled: u32,
+}
+
+impl Bodies {
+    pub fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// Whether this cloth touched any.
+    pub fn touched(&self) -> bool {
+        self.list.iter().any(|proxy| proxy.touched)
+    }
+
+    /// One for each body of the step, and on by the velocity that they have got.
+    pub fn advance(&mut self, bodies: &[ColliderBody], substep: &Substep) {
+        if self.list.len() != bodies.len() {
+            self.list.clear();
+            self.list.resize(bodies.len(), Proxy::default());
+        }
+        for proxy in self.list.iter_mut().filter(|proxy| proxy.touched) {
+            proxy.start = (proxy.done.translation, proxy.done.rotation);
+            proxy.done.translation += proxy.gained.0 * substep.seconds;
+            proxy.done.rotation += proxy.gained.1 * substep.seconds;
+        }
+    }
+}
+
+impl Proxy {
+    /// Where a part of the body is that was to be at `at`, with the body's centre of mass at `center`: at the start or at the end
+    /// of the substep.
+    pub fn displaced(&self, at: Isometry3d, center: Vec3, at_end: bool) -> Isometry3d {
+        let (moved, turned) = if at_end {
+            (self.done.translation, self.done.rotation)
+        } else {
+            self.start
+        };
+        let turn = Quat::from_scaled_axis(turned);
+        let arm = Vec3::from(at.translation) - center;
+        Isometry3d::new(
+            center + moved + turn * arm,
+            (turn * at.rotation).normalize(),
+        )
+    }
+
+    /// Gives it an impulse \[N s\] · substep at an arm from its centre of mass \[m\].
+    fn push(&mut self, body: &ColliderBody, arm: Vec3, impulse: Vec3, seconds: f32, moves: bool) {
+        if impulse == Vec3::ZERO {
+            return;
+        }
+        let moment = arm.cross(impulse);
+        let shift = body.inv_mass * impulse;
+        let turn = body.inv_inertia * moment;
+        if moves {
+            self.done.translation += shift;
+            self.done.rotation += turn;
+        }
+        self.gained.0 += shift / seconds;
+        self.gained.1 += turn / seconds;
+        self.done.impulse += impulse / seconds;
+        self.done.angular_impulse += moment / seconds;
+        self.touched = true;
+    }
+}
+
+/// A body in a substep.
+pub(super) struct Struck<'a> {
+    pub body: &'a ColliderBody,
+    pub proxy: &'a mut Proxy,
+    /// Where the collider was to be at the start and at the end of the substep, in the world.
+    pub given: [Isometry3d; 2],
+    /// Its centre of mass was to be here at the end, and was here at the start \[m\].
+    pub center: Vec3,
+    pub center_before: Vec3,
+    pub friction: f32,
+    pub seconds: f32,
+}
+
+/// A particle in contact with a body, which carries a part of it along the normal while the constraints are solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coupling {
+    /// The collider: its entity, and which of the entity's.
+    pub collider: (Entity, (u32, u32)),
+    /// Which of the bodies of the step.
+    pub body: usize,
+    pub particle: usize,
+    /// Unit normal, in the axes of the cloth's frame.
+    pub normal: Vec3,
+    /// √s.
+    pub share: f32,
+    /// The part of the body's mass \[kg\].
+    pub mass: f32,
+    /// What pressed the two together in this substep \[N s\] · substep.
+    pub pressed: f32,
+    /// Where tethers moved the particle along the normal \[m\], against the body alone.
+    pub held: f32,
+}
+
+impl Coupling {
+    pub fn new(
+        collider: (Entity, (u32, u32)),
+        body: usize,
+        particle: usize,
+        normal: Vec3,
+        pressed: f32,
+    ) -> Self {
+        Self {
+            collider,
+            body,
+            particle,
+            normal,
+            pressed,
+            share: 0.0,
+            mass: 0.0,
+            held: 0.0,
+        }
+    }
+}
+
+impl Struck<'_> {
+    /// Where the collider is in the cloth's frame at the start and at the end of the substep, as far as it is known.
+    pub fn way(&self, frame: &ClothFrame) -> [Isometry3d; 2] {
+        let [from, to] = self.given;
+        let from = self.proxy.displaced(from, self.center_before, false);
+        let to = self.proxy.displaced(to, self.center, true);
+        let inverse = frame.isometry().inverse();
+        [from, to].map(|at| inverse * at)
+    }
+
+    /// How it moves in the cloth's frame.
+    pub fn motion(&self, frame: &ClothFrame) -> Motion {
+        super::narrow::motion(self.way(frame), self.friction)
+    }
+
+    /// Where a particle is from the body's centre of mass \[m\], given where it was in the world at the start of the substep.
+    ///
+    /// The arms at the start are those that keep angular momentum: a displacement Δ from x gives a particle x₀ × m Δ/h of it.
+    fn arm(&self, before: Vec3) -> Vec3 {
+        before - (self.center_before + self.proxy.start.0)
+    }
+
+    /// W: 1/mass of the body along a direction [1/kg], at a particle that was at a place in the world.
+    pub fn inv_mass_at(&self, before: Vec3, along: Vec3) -> f32 {
+        self.inv_mass(self.arm(before), along)
+    }
+
+    /// Gives the body an impulse \[N s\] · substep at a particle that was at a place in the world.
+    pub fn push(&mut self, before: Vec3, impulse: Vec3) {
+        let arm = self.arm(before);
+        self.proxy.push(self.body, arm, impulse, self.seconds, true);
+    }
+
+    /// Moves the body as such an impulse does, without changing its velocity.
+    pub fn shift(&mut self, before: Vec3, impulse: Vec3) {
+        let arm = self.arm(before);
+        self.proxy.done.translation += self.body.inv_mass * impulse;
+        self.proxy.done.rotation += self.body.inv_inertia * arm.cross(impulse);
+    }
+
+    fn inv_mass(&self, arm: Vec3, along: Vec3) -> f32 {
+        let lever = arm.cross(along);
+        (self.body.inv_mass + lever.dot(self.body.inv_inertia * lever)).max(0.0)
+    }
+
+    /// Lets particle `i` of inverse mass `w` strike the body: pushes both apart and, where `pressed` says by how much the two were
+    /// pressed together before \[N s\] · substep, rubs. Returns how hard it strikes, in the same unit.
+    pub fn strike(
+        &mut self,
+        contact: Contact,
+        frame: &ClothFrame,
+        (i, w): (usize, f32),
+        pressed: Option<f32>,
+        [position, previous]: [&mut Points; 2],
+    ) -> f32 {
+        let h = self.seconds;
+        let normal = frame.vector_to_world(contact.normal);
+        let place = frame.to_world(position.get(i));
+        let arm = self.arm(frame.to_world(previous.get(i)));
+        let both = w + self.inv_mass(arm, normal);
+        if both <= 0.0 {
+            return 0.0;
+        }
+        let impulse = contact.depth.max(0.0) / both;
+        let mut to = position.get(i) + contact.normal * (w * impulse);
+        let mut from = previous.get(i);
+        self.proxy.push(self.body, arm, normal * -impulse, h, true);
+
+        // How the particle moves against the surface.
+        let [start, end] = self.given;
+        let local = end.inverse() * place;
+        let given = place - start * local;
+        let velocity = self.proxy.gained.0 + self.proxy.gained.1.cross(arm);
+        let sliding = frame.vector_to_world(to - from) - given - velocity * h;
+        let away = normal.dot(sliding);
+        if impulse > 0.0 && away > 0.0 {
+            // What was inside does not fly off: that speed comes from the push alone.
+            let back = away / both;
+            from += contact.normal * (w * back);
+            self.proxy.push(self.body, arm, normal * back, h, false);
+        }
+        let sliding = sliding - normal * away;
+        let length = sliding.length();
+        if let Some(pressed) = pressed
+            && length > 0.0
+        {
+            let along = sliding / length;
+            let stop = length / (w + self.inv_mass(arm, along));
+            let rub = along * stop.min(self.friction * (impulse + pressed));
+            to -= frame.vector_to_frame(rub) * w;
+            self.proxy.push(self.body, arm, rub, h, true);
+        }
+        position.set(i, to);
+        previous.set(i, from);
+        impulse
+    }
+}

@@ -1,0 +1,263 @@
+//! The stages of bodies that cloth pushes; [`bodies`](super::bodies) explains them.
+
+use std::{mem, ops::Range};
+
+use bevy_math::Vec3;
+
+use super::{
+    ClothColliders,
+    bodies::{Coupling, Proxy, Struck},
+    near::{Around, LEAVING},
+    snapshot::MovingCollider,
+    stages::combined_friction,
+};
+use crate::{
+    particles::ClothParticles,
+    points::Points,
+    solver::kernels::contact::Phase,
+    stages::{ClothStagesItem, Substep},
+};
+
+/// The most of a particle's inverse mass that a coupling takes: the rest is lost in rounding.
+const MOST: f32 = 1.0 - 1e-5;
+
+impl ClothColliders {
+    /// Lets the particles of a cloth strike a body: those that touch it, and those that are coupled with it.
+    ///
+    /// Before the constraints are solved those become coupled that touch, and those stay so that are near; after that, those stay
+    /// coupled that were pressed on it.
+    pub(super) fn strike(
+        &self,
+        (collider, index): (&MovingCollider, usize),
+        phase: Phase,
+        substep: &Substep,
+        cloth: &mut ClothStagesItem,
+        around: &mut Around,
+    ) {
+        let (frame, material) = (&*cloth.frame, cloth.material);
+        let Some(mut proxy) = around.bodies.list.get(index).copied() else {
+            return;
+        };
+        let friction = combined_friction(collider.friction, material.friction);
+        let Some(mut struck) = self.struck((collider, index), friction, &mut proxy, substep) else {
+            return;
+        };
+        let margin = collider.margin + material.margin();
+        let particles = &mut *cloth.particles;
+        let mut couplings = mem::take(&mut around.couplings);
+        let old = group(&couplings, collider);
+
+        let mut found = mem::take(&mut around.found);
+        found.clear();
+        found.extend(couplings[old.clone()].iter().map(|c| c.particle));
+        let (way, len) = (struck.way(frame), particles.len());
+        let motion = struck.motion(frame);
+        let mut start = 0;
+        while let Some(range) = around.next(&collider.solid, way, margin, start, len) {
+            start = range.end;
+            collider.prepare(&motion, margin, particles, around, substep, range.clone());
+            collider.find_touching(&motion, margin, particles, around, range, &mut found);
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.retain(|&i| i < len);
+
+        let last = phase == Phase::Final;
+        for &i in &found {
+            let known = couplings[old.clone()].binary_search_by_key(&i, |c| c.particle);
+            let known = known.ok().map(|k| couplings[old.start + k]);
+            let path = [
+                particles.previous_position.get(i),
+                particles.position.get(i),
+            ];
+            let contact = collider.nearest(&struck.motion(frame), margin, around, i, path);
+            if contact.depth <= 0.0 && (known.is_none() || contact.depth < -LEAVING) {
+                continue;
+            }
+            let w = particles.inv_mass[i];
+            let before = last.then(|| known.map_or(0.0, |coupling| coupling.pressed));
+            let ClothParticles {
+                position,
+                previous_position,
+                ..
+            } = &mut *particles;
+            let path = [position, previous_position];
+            let impulse = struck.strike(contact, frame, (i, w), before, path);
+            let pressed = impulse + before.unwrap_or(0.0);
+            if w > 0.0 && (pressed > 0.0 || !last) {
+                let collider = collider.name();
+                couplings.push(Coupling::new(collider, index, i, contact.normal, pressed));
+            }
+        }
+        couplings.drain(old);
+        let points = [&particles.position, &particles.previous_position];
+        around.update_each(substep.level, points, &found);
+        around.found = found;
+        around.couplings = couplings;
+        around.bodies.list[index] = proxy;
+    }
+
+    /// Shares bodies out to the particles that are coupled with them, and tells the constraints.
+    pub(super) fn share_out(
+        &self,
+        substep: &Substep,
+        cloth: &mut ClothStagesItem,
+        around: &mut Around,
+    ) {
+        let mut couplings = mem::take(&mut around.couplings);
+        // What no longer comes near a collider touches it no more.
+        couplings.retain(|coupling| self.find(coupling, around).is_some());
+        let bodies = &mut around.bodies.list;
+        bodies.iter_mut().for_each(|proxy| proxy.coupled = 0);
+        for coupling in &couplings {
+            bodies[coupling.body].coupled += 1;
+        }
+        let frame = &*cloth.frame;
+        let ClothParticles {
+            previous_position,
+            inv_mass,
+            contacts,
+            ..
+        } = &mut *cloth.particles;
+        contacts.pressed.clear();
+        if !couplings.is_empty() {
+            contacts.pressed.resize(inv_mass.len(), 0.0);
+        }
+        for group in couplings.chunk_by_mut(|a, b| a.collider == b.collider) {
+            let body = group[0].body;
+            let mut proxy = around.bodies.list[body];
+            let count = proxy.coupled as f32;
+            let Some(collider) = self.find(&group[0], around) else {
+                continue;
+            };
+            let Some(struck) = self.struck((collider, body), 0.0, &mut proxy, substep) else {
+                continue;
+            };
+            for coupling in group {
+                let i = coupling.particle;
+                let before = frame.to_world(previous_position.get(i));
+                let along = frame.vector_to_world(coupling.normal);
+                let w = inv_mass[i];
+                let share = w / (w + count * struck.inv_mass_at(before, along));
+                let share = share.min(MOST);
+                coupling.mass = (share / (w * (1.0 - share))).max(f32::MIN_POSITIVE);
+                // Where it lies on something else as well, the constraints know of that alone.
+                if contacts.depth[i] == 0.0 {
+                    coupling.share = share.sqrt();
+                    contacts.normal.set(i, coupling.share * coupling.normal);
+                    contacts.any = true;
+                }
+            }
+        }
+        around.couplings = couplings;
+    }
+
+    /// Gives bodies what constraints pushed the particles with that are coupled with them.
+    pub(super) fn hand_over(
+        &self,
+        substep: &Substep,
+        cloth: &mut ClothStagesItem,
+        around: &mut Around,
+    ) {
+        let mut couplings = mem::take(&mut around.couplings);
+        let frame = &*cloth.frame;
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            contacts,
+            ..
+        } = &mut *cloth.particles;
+        let pins = motion_of_pins(inv_mass, [previous_position, position]);
+        for group in couplings.chunk_by_mut(|a, b| a.collider == b.collider) {
+            let body = group[0].body;
+            let Some(mut proxy) = around.bodies.list.get(body).copied() else {
+                continue;
+            };
+            let Some(collider) = self.find(&group[0], around) else {
+                continue;
+            };
+            let Some(mut struck) = self.struck((collider, body), 0.0, &mut proxy, substep) else {
+                continue;
+            };
+            let margin = collider.margin + cloth.material.margin();
+            let motion = struck.motion(frame);
+            for coupling in group {
+                let i = coupling.particle;
+                let mut pushed = coupling.share * contacts.pressed.get(i).copied().unwrap_or(0.0);
+                let mut held = coupling.held.max(0.0);
+                let path = [previous_position.get(i), position.get(i)];
+                let meets = collider.nearest(&motion, margin, around, i, path).depth >= 0.0;
+                if pushed > 0.0 || !meets {
+                    let to = path[1] + coupling.normal * (inv_mass[i] * pushed);
+                    position.set(i, to);
+                    (pushed, held) = (0.0, 0.0);
+                }
+                let before = frame.to_world(path[0]);
+                let along = frame.vector_to_world(coupling.normal);
+                let inwards = held - pushed / coupling.mass;
+                // What pins pull back of what was too far away before gets no velocity of that.
+                let stopped = pins.map_or(inwards, |pins| {
+                    let way = coupling.normal.dot(path[1] - path[0] - pins) + inwards;
+                    inwards.min(way.max(0.0))
+                });
+                coupling.pressed += inwards * coupling.mass;
+                coupling.held = 0.0;
+                struck.push(before, along * -(stopped * coupling.mass));
+                struck.shift(before, along * -((inwards - stopped) * coupling.mass));
+            }
+            around.bodies.list[body] = proxy;
+        }
+        contacts.pressed.clear();
+        around.couplings = couplings;
+    }
+
+    /// The collider that a particle is coupled with, where it is near and belongs to that body.
+    fn find(&self, coupling: &Coupling, around: &Around) -> Option<&MovingCollider> {
+        let near = around.near.iter().filter_map(|&k| self.colliders.get(k));
+        near.into_iter()
+            .find(|c| c.name() == coupling.collider && c.body == Some(coupling.body))
+    }
+
+    /// A body in a substep.
+    fn struck<'a>(
+        &'a self,
+        (collider, index): (&MovingCollider, usize),
+        friction: f32,
+        proxy: &'a mut Proxy,
+        substep: &Substep,
+    ) -> Option<Struck<'a>> {
+        let body = self.bodies.get(index)?;
+        let (start, end) = substep.fractions();
+        let given = [collider.at(start), collider.at(end)];
+        let local = collider.end.inverse() * body.center_of_mass;
+        Some(Struck {
+            body,
+            proxy,
+            given,
+            center: given[1] * local,
+            center_before: given[0] * local,
+            friction,
+            seconds: substep.seconds,
+        })
+    }
+}
+
+/// The mean way of what is held during the substep \[m\]; none where nothing is.
+fn motion_of_pins(inv_mass: &[f32], [from, to]: [&Points; 2]) -> Option<Vec3> {
+    let (mut sum, mut count) = (Vec3::ZERO, 0);
+    for (i, _) in inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0) {
+        sum += to.get(i) - from.get(i);
+        count += 1;
+    }
+    (count > 0).then(|| sum / count as f32)
+}
+
+/// The couplings of a collider, which lie side by side in the order of particles.
+fn group(couplings: &[Coupling], collider: &MovingCollider) -> Range<usize> {
+    let name = collider.name();
+    let is_own = |coupling: &Coupling| coupling.collider == name;
+    let first = couplings.iter().position(is_own).unwrap_or(0);
+    let count = couplings[first..].iter().take_while(|c| is_own(c)).count();
+    first..first + count
+}

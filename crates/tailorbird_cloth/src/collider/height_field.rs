@@ -1,0 +1,88 @@
+//! Heights over a rectangle: terrain.
+
+use std::sync::Arc;
+
+use bevy_math::{UVec2, Vec2};
+use bevy_reflect::prelude::*;
+
+use crate::error::ClothErrorKind;
+
+/// Heights above the x-z plane, in a grid around the origin. All below the surface is solid, as deep as it may be. A clone
+/// shares them.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(opaque, Debug, PartialEq)]
+pub struct HeightField {
+    heights: Arc<[f32]>,
+    resolution: UVec2,
+    size: Vec2,
+    range: (f32, f32),
+}
+
+impl HeightField {
+    /// `heights[row · columns + column]` \[m\]: columns lie along +x, rows along +z. `size` is the rectangle between the
+    /// first and the last of them \[m\].
+    ///
+    /// # Errors
+    /// [`ClothErrorKind::HeightField`], [`ClothErrorKind::Value`].
+    pub fn new(
+        heights: impl Into<Arc<[f32]>>,
+        columns: u32,
+        size: Vec2,
+    ) -> Result<Self, ClothErrorKind> {
+        let heights = heights.into();
+        let rows = heights.len() as u32 / columns.max(1);
+        if columns < 2 || rows < 2 || rows as usize * columns as usize != heights.len() {
+            return Err(ClothErrorKind::HeightField {
+                heights: heights.len(),
+                columns,
+            });
+        }
+        let mut values = heights.iter().map(|height| {
+            let finite = |h: f32| h.is_finite();
+            ClothErrorKind::number("HeightField height", *height, finite, "finite [m]")
+        });
+        let sides = size.to_array().map(|side| {
+            let ok = |s: f32| s > 0.0 && s.is_finite();
+            ClothErrorKind::number("HeightField size", side, ok, "above 0 and finite [m]")
+        });
+        if let Some(error) = values
+            .find_map(|e| e)
+            .or(sides.into_iter().flatten().next())
+        {
+            return Err(error);
+        }
+        Ok(Self {
+            resolution: UVec2::new(columns, rows),
+            range: heights.iter().fold((f32::MAX, f32::MIN), |(low, high), h| {
+                (low.min(*h), high.max(*h))
+            }),
+            heights,
+            size,
+        })
+    }
+
+    /// The heights \[m\], row by row.
+    pub fn heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// Columns (along x) and rows (along z).
+    pub fn resolution(&self) -> UVec2 {
+        self.resolution
+    }
+
+    /// The rectangle along x and z \[m\].
+    pub fn size(&self) -> Vec2 {
+        self.size
+    }
+
+    /// The lowest and the highest of the heights \[m\].
+    pub(super) fn range(&self) -> (f32, f32) {
+        self.range
+    }
+
+    /// The same for all clones.
+    pub(super) fn id(&self) -> usize {
+        Arc::as_ptr(&self.heights) as *const f32 as usize
+    }
+}

@@ -1,0 +1,48 @@
+//! Which cloths collide with which colliders.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+
+/// Which colliders a cloth meets, and which cloths a collider: two interact where each one's memberships share a bit with
+/// the other's filters. Optional on both; whatever has none meets everything that wants to meet it.
+///
+/// ```
+/// # use tailorbird_cloth::prelude::*;
+/// const BODY: u32 = 1 << 0;
+/// const PROPS: u32 = 1 << 1;
+/// let cape = ClothLayers::new(u32::MAX, BODY);
+/// let chair = ClothLayers::new(PROPS, u32::MAX);
+/// assert!(!cape.interacts_with(chair));
+/// ```
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothLayers {
+    /// The layers that it is in, a bit each.
+    pub memberships: u32,
+    /// The layers that it meets, a bit each.
+    pub filters: u32,
+}
+
+impl Default for ClothLayers {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+impl ClothLayers {
+    /// In all layers, and meets all.
+    pub const ALL: Self = Self::new(u32::MAX, u32::MAX);
+
+    /// In these layers, meeting those.
+    pub const fn new(memberships: u32, filters: u32) -> Self {
+        Self {
+            memberships,
+            filters,
+        }
+    }
+
+    /// Whether the two meet.
+    pub const fn interacts_with(self, other: Self) -> bool {
+        self.memberships & other.filters != 0 && other.memberships & self.filters != 0
+    }
+}

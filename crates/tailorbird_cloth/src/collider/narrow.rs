@@ -1,0 +1,301 @@
+//! Contacts of the particles of a cloth with one collider.
+
+use bevy_math::{Isometry3d, Mat3, Vec3};
+use fearless_simd::Level;
+
+use super::{
+    near::Around,
+    sight::{Sight, look},
+    snapshot::MovingCollider,
+    solid::Solid,
+    stages::combined_friction,
+};
+use crate::{
+    frame::shortest,
+    particles::ClothParticles,
+    solver::kernels::{
+        ball::{Ball, Ground},
+        capsule::Capsule,
+        contact::{Phase, Touching},
+        cuboid::Cuboid,
+        cylinder::Cylinder,
+        half_space::{self, MovingHalfSpace},
+        lanes::{Shared, SharedPoints},
+        patches::{Patches, Seen},
+        planes::Planes,
+        solid::{self, Contact, Motion},
+        sphere::{self, MovingSphere},
+        terrain::Terrain,
+    },
+    stages::{ClothStagesItem, Substep},
+};
+
+/// Calls a body of code with the kernel's form of a solid.
+macro_rules! with_solid {
+    ($solid:expr, $margin:expr, $seen:expr, |$name:ident| $do:expr) => {{
+        let margin: f32 = $margin;
+        match $solid {
+            Solid::Sphere { radius } => {
+                let $name = Ball {
+                    radius: radius + margin,
+                };
+                $do
+            }
+            Solid::HalfSpace => {
+                let $name = Ground { margin };
+                $do
+            }
+            Solid::Capsule { radii, half_length } => {
+                let $name = Capsule::new(radii[0], radii[1], *half_length, margin);
+                $do
+            }
+            Solid::Cuboid { half_size } => {
+                let $name = Cuboid {
+                    half_size: *half_size + margin,
+                };
+                $do
+            }
+            Solid::Cylinder {
+                radius,
+                half_height,
+            } => {
+                let $name = Cylinder {
+                    radius: radius + margin,
+                    half_height: half_height + margin,
+                };
+                $do
+            }
+            Solid::Hull(hull) => {
+                let $name = Planes {
+                    planes: &hull.planes,
+                    margin,
+                    size: hull.size,
+                };
+                $do
+            }
+            Solid::Terrain { field, scale } => {
+                let cells = (field.resolution() - 1).as_vec2();
+                let $name = Terrain {
+                    heights: field.heights(),
+                    resolution: field.resolution(),
+                    cell: field.size() * bevy_math::Vec2::new(scale.x, scale.z) / cells,
+                    stretch: scale.y,
+                    margin,
+                };
+                $do
+            }
+            Solid::Mesh(_) => {
+                let patches: &Patches = $seen;
+                let $name = Seen { patches, margin };
+                $do
+            }
+        }
+    }};
+}
+
+/// The particles of a cloth, as kernels take them.
+fn touching(particles: &mut ClothParticles, phase: Phase, note: bool) -> Touching<'_> {
+    let ClothParticles {
+        position,
+        previous_position,
+        inv_mass,
+        contacts,
+        ..
+    } = particles;
+    let known = note
+        && contacts.depth.len() == inv_mass.len()
+        && (phase == Phase::Approach || contacts.any);
+    Touching {
+        position: SharedPoints::new(position),
+        previous: SharedPoints::new(previous_position),
+        inv_mass: Shared::new(inv_mass),
+        contacts: known.then(|| {
+            (
+                SharedPoints::new(&mut contacts.normal),
+                Shared::new(&mut contacts.depth),
+            )
+        }),
+        phase,
+    }
+}
+
+/// How a solid goes from one place in the frame of the particles to another.
+pub(super) fn motion([from, to]: [Isometry3d; 2], friction: f32) -> Motion {
+    let axes = Mat3::from_quat(to.rotation);
+    Motion {
+        from: from.translation.into(),
+        to: to.translation.into(),
+        axes,
+        turn: if from.rotation == to.rotation {
+            Mat3::IDENTITY
+        } else {
+            axes * Mat3::from_quat(from.rotation).transpose()
+        },
+        friction,
+    }
+}
+
+/// How something turns on a way: axis times angle \[rad\].
+fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
+    if from.rotation == to.rotation {
+        Vec3::ZERO
+    } else {
+        shortest(to.rotation * from.rotation.inverse()).to_scaled_axis()
+    }
+}
+
+impl MovingCollider {
+    /// Keeps the particles of one cloth out.
+    pub(super) fn collide(
+        &self,
+        phase: Phase,
+        substep: &Substep,
+        cloth: &mut ClothStagesItem,
+        around: &mut Around,
+    ) {
+        let (frame, material) = (&*cloth.frame, cloth.material);
+        let way = frame.way_to_frame(self.start, self.end, substep.fractions());
+        let margin = self.margin + material.margin();
+        let friction = combined_friction(self.friction, material.friction);
+        let motion = motion(way, friction);
+        let turn = turn(way);
+        let particles = &mut *cloth.particles;
+        let len = particles.len();
+        let mut start = 0;
+        while let Some(range) = around.next(&self.solid, way, margin, start, len) {
+            start = range.end;
+            self.prepare(&motion, margin, particles, around, substep, range.clone());
+            let any = self.collide_range(
+                phase,
+                substep,
+                (&motion, turn, margin),
+                touching(particles, phase, true),
+                around.seen(self),
+                range.clone(),
+            );
+            if any {
+                particles.contacts.any |= phase == Phase::Approach;
+                let points = [&particles.position, &particles.previous_position];
+                around.update(substep.level, points, range);
+            }
+        }
+        if let Some(held) = particles.grabbed {
+            self.collide_held(held.particle as usize, &motion, margin, particles, around);
+        }
+    }
+
+    /// Keeps the particles of a range out.
+    fn collide_range(
+        &self,
+        phase: Phase,
+        substep: &Substep,
+        (motion, rotation, margin): (&Motion, Vec3, f32),
+        particles: Touching,
+        seen: &Patches,
+        range: std::ops::Range<usize>,
+    ) -> bool {
+        let (level, crew) = (substep.level, substep.crew);
+        let Motion {
+            from, to, friction, ..
+        } = *motion;
+        debug_assert_eq!(particles.phase, phase);
+        match &self.solid {
+            Solid::Sphere { radius } => {
+                let radius = radius + margin;
+                let sphere = MovingSphere {
+                    from,
+                    to,
+                    rotation,
+                    radius,
+                    friction,
+                };
+                crew.any(range, |range| {
+                    sphere::collide_all(level, &sphere, particles, range)
+                })
+            }
+            Solid::HalfSpace => {
+                let plane = MovingHalfSpace {
+                    from,
+                    to,
+                    normal: motion.axes.y_axis,
+                    margin,
+                    friction,
+                };
+                crew.any(range, |range| {
+                    half_space::collide_all(level, &plane, particles, range)
+                })
+            }
+            other => with_solid!(other, margin, seen, |solid| crew.any(range, |range| {
+                solid::collide_all(level, &solid, motion, particles, range)
+            })),
+        }
+    }
+
+    /// Lists which particles of a range touch it.
+    pub(super) fn find_touching(
+        &self,
+        motion: &Motion,
+        margin: f32,
+        particles: &mut ClothParticles,
+        around: &Around,
+        range: std::ops::Range<usize>,
+        found: &mut Vec<usize>,
+    ) {
+        let touching = touching(particles, Phase::Final, false);
+        let seen = around.seen(self);
+        with_solid!(&self.solid, margin, seen, |solid| {
+            solid::find(&solid, motion, touching, range, |i| found.push(i));
+        });
+    }
+
+    /// Where the path of particle `i` ends with respect to the surface.
+    pub(super) fn nearest(
+        &self,
+        motion: &Motion,
+        margin: f32,
+        around: &Around,
+        i: usize,
+        path: [Vec3; 2],
+    ) -> Contact {
+        let seen = around.seen(self);
+        with_solid!(&self.solid, margin, seen, |solid| {
+            solid::nearest(&solid, motion, i, path)
+        })
+    }
+
+    /// Keeps the particle out that is held by a hand.
+    fn collide_held(
+        &self,
+        i: usize,
+        motion: &Motion,
+        margin: f32,
+        particles: &mut ClothParticles,
+        around: &mut Around,
+    ) {
+        if let (Solid::Mesh(surface), id) = (&self.solid, self.id()) {
+            let sight = around.sights.iter_mut().find(|sight| sight.collider == id);
+            if let Some(Sight { patches, .. }) = sight
+                && i < patches.holds.len()
+            {
+                look(surface, patches, motion, particles, i, margin);
+            } else {
+                return;
+            }
+        }
+        let path = [
+            particles.previous_position.get(i),
+            particles.position.get(i),
+        ];
+        let contact = self.nearest(motion, margin, around, i, path);
+        if contact.depth > 0.0 {
+            let to = path[1] + contact.normal * contact.depth;
+            particles.position.set(i, to);
+            let start = motion.turn * (path[0] - motion.from);
+            let away = contact.normal.dot(to - motion.to - start).max(0.0);
+            let back = motion.turn.transpose() * (contact.normal * away);
+            particles.previous_position.set(i, path[0] + back);
+            let points = [&particles.position, &particles.previous_position];
+            around.update(Level::fallback(), points, i..i + 1);
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What bodies get back from the cloth that they push.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+
+use super::{ClothColliders, ExternalColliders};
+use crate::{cloth::Cloth, particles::ClothParticles};
+
+/// What cloth did to bodies in the last step: for each [`ColliderBody`](super::ColliderBody) that a cloth touched, after
+/// [`ClothSystems::Simulate`](crate::schedule::ClothSystems::Simulate).
+#[derive(Resource, Clone, Debug, Default)]
+pub struct ClothReactions {
+    pub(crate) list: Vec<(Entity, ClothReaction)>,
+}
+
+/// What cloth did to one body in a step, in world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ClothReaction {
+    /// Momentum that the body got \[N s\].
+    pub impulse: Vec3,
+    /// Angular momentum about its centre of mass \[N m s\].
+    pub angular_impulse: Vec3,
+    /// By how far cloth moved it within the step \[m\]: from the end pose that was given.
+    pub translation: Vec3,
+    /// By how much cloth turned it about its centre of mass: axis times angle \[rad\].
+    pub rotation: Vec3,
+    /// Its velocity with that [m/s]: the one that was given, and the impulse times the inverse mass.
+    pub linear_velocity: Vec3,
+    /// Its angular velocity with that [rad/s].
+    pub angular_velocity: Vec3,
+}
+
+impl ClothReactions {
+    /// What happened to this body; `None` where no cloth touched it.
+    pub fn get(&self, body: Entity) -> Option<&ClothReaction> {
+        let found = self.list.binary_search_by_key(&body, |(entity, _)| *entity);
+        found.ok().map(|i| &self.list[i].1)
+    }
+
+    /// All bodies that were touched, in the order of entities.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (Entity, &ClothReaction)> + '_ {
+        self.list.iter().map(|(body, reaction)| (*body, reaction))
+    }
+}
+
+/// Adds up what all cloths did to bodies, in the order of the cloths' entities. Where no step was made, nothing was done.
+pub fn gather_reactions(
+    colliders: Res<ClothColliders>,
+    mut external: ResMut<ExternalColliders>,
+    mut reactions: ResMut<ClothReactions>,
+    mut order: Local<Vec<Entity>>,
+    mut cloths: Query<(Entity, &mut ClothParticles), With<Cloth>>,
+) {
+    if !external.is_empty() {
+        // A pause: they are not for the step after it.
+        external.colliders.clear();
+    }
+    let list = &mut reactions.bypass_change_detection().list;
+    let before = list.len();
+    list.clear();
+    order.clear();
+    let pushed = cloths
+        .iter()
+        .filter(|(_, particles)| particles.contacts.around.bodies.touched());
+    order.extend(pushed.map(|(entity, _)| entity));
+    order.sort_unstable();
+    for entity in &*order {
+        let Ok((_, mut particles)) = cloths.get_mut(*entity) else {
+            continue;
+        };
+        let bodies = &mut particles.bypass_change_detection().contacts.around.bodies;
+        for (body, proxy) in colliders.bodies.iter().zip(&bodies.list) {
+            if !proxy.touched {
+                continue;
+            }
+            let at = list.binary_search_by_key(&body.body, |(entity, _)| *entity);
+            let at = at.unwrap_or_else(|at| {
+                let unmoved = ClothReaction {
+                    linear_velocity: body.linear_velocity,
+                    angular_velocity: body.angular_velocity,
+                    ..ClothReaction::default()
+                };
+                list.insert(at, (body.body, unmoved));
+                at
+            });
+            let sum = &mut list[at].1;
+            sum.impulse += proxy.done.impulse;
+            sum.angular_impulse += proxy.done.angular_impulse;
+            sum.translation += proxy.done.translation;
+            sum.rotation += proxy.done.rotation;
+            sum.linear_velocity += body.inv_mass * proxy.done.impulse;
+            sum.angular_velocity += body.inv_inertia * proxy.done.angular_impulse;
+        }
+        bodies.clear();
+    }
+    if before > 0 || !reactions.list.is_empty() {
+        reactions.set_changed();
+    }
+}

@@ -1,0 +1,123 @@
+//! What the particles of a cloth see of triangle meshes.
+
+use bevy_ecs::prelude::*;
+
+use super::{near::Around, snapshot::MovingCollider, solid::Solid, surface::Surface};
+use crate::{
+    particles::ClothParticles,
+    points::Points,
+    solver::kernels::{
+        patches::{Patches, outdated},
+        solid::Motion,
+    },
+    stages::Substep,
+};
+
+/// What the particles of a cloth see of a mesh.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sight {
+    pub(super) collider: Option<(Entity, (u32, u32), u64)>,
+    pub(super) patches: Patches,
+    /// Particles whose plane holds no longer; scratch.
+    outdated: Vec<usize>,
+}
+
+impl Sight {
+    /// Whether it is of this collider.
+    pub(super) fn is_of(&self, collider: &MovingCollider) -> bool {
+        self.collider.is_some() && self.collider == collider.id()
+    }
+
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let Patches {
+            normal,
+            offset,
+            place,
+            holds,
+        } = &self.patches;
+        let points = [normal, place].map(Points::memory_bytes);
+        points.iter().sum::<usize>()
+            + offset.memory_bytes()
+            + holds.memory_bytes()
+            + crate::memory::heap(&self.outdated)
+    }
+}
+
+static NOTHING: std::sync::LazyLock<Patches> = std::sync::LazyLock::new(Patches::default);
+
+impl Around {
+    /// What the particles see of this collider.
+    pub(super) fn seen(&self, collider: &MovingCollider) -> &Patches {
+        let id = collider.id();
+        let sight = self.sights.iter().find(|sight| sight.collider == id);
+        sight.map_or(&NOTHING, |sight| &sight.patches)
+    }
+}
+
+impl MovingCollider {
+    /// What tells a mesh, at its scale, from others.
+    pub(super) fn id(&self) -> Option<(Entity, (u32, u32), u64)> {
+        let Solid::Mesh(_) = self.solid else {
+            return None;
+        };
+        Some((self.entity, self.part, self.solid.bits()[1]))
+    }
+
+    /// Sees to it that the planes that particles see of a mesh are right.
+    pub(super) fn prepare(
+        &self,
+        motion: &Motion,
+        margin: f32,
+        particles: &mut ClothParticles,
+        around: &mut Around,
+        substep: &Substep,
+        range: std::ops::Range<usize>,
+    ) {
+        let (Solid::Mesh(surface), id) = (&self.solid, self.id()) else {
+            return;
+        };
+        let len = particles.len();
+        let known = around.sights.iter().position(|sight| sight.collider == id);
+        let at = known.unwrap_or_else(|| {
+            around.sights.push(Sight::default());
+            around.sights.len() - 1
+        });
+        let Sight {
+            collider,
+            patches,
+            outdated: found,
+        } = &mut around.sights[at];
+        if *collider != id || patches.holds.len() != len {
+            *collider = id;
+            patches.reset(len);
+        }
+        found.clear();
+        outdated(
+            substep.level,
+            patches,
+            motion,
+            (&particles.position, &particles.inv_mass),
+            range,
+            |i| found.push(i),
+        );
+        for &i in &*found {
+            look(surface, patches, motion, particles, i, margin);
+        }
+    }
+}
+
+/// Looks for the plane that a particle sees of a mesh.
+pub(super) fn look(
+    surface: &Surface,
+    patches: &mut Patches,
+    motion: &Motion,
+    particles: &ClothParticles,
+    i: usize,
+    margin: f32,
+) {
+    let inverse = motion.axes.transpose();
+    let from = inverse * (motion.turn * (particles.previous_position.get(i) - motion.from));
+    let to = inverse * (particles.position.get(i) - motion.to);
+    surface.look(patches, i, [from, to], margin);
+}

@@ -1,0 +1,392 @@
+//! The colliders of a step.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use bevy_reflect::prelude::*;
+use bevy_transform::helper::TransformHelper;
+
+use super::{
+    ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,
+    check,
+    solid::{Solid, Solids, swept},
+};
+use crate::{
+    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    frame::split,
+    step::ClothStep,
+};
+
+/// Where a collider was at the end of the step before. Written by [`snapshot_colliders`] alone.
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct ColliderPose {
+    place: Option<Isometry3d>,
+    scale: Vec3,
+}
+
+impl ColliderPose {
+    /// A scale that differs by more than this part of it is another one: below that it is the rounding of something that
+    /// turns, which must not make a mesh or hull of another size of each step.
+    const SAME_SCALE: f32 = 1e-5;
+
+    /// The scale that is in force from now on.
+    fn settle(&mut self, scale: Vec3) -> Vec3 {
+        let difference = (scale - self.scale).abs();
+        if difference.cmpgt(Self::SAME_SCALE * scale.abs()).any() {
+            self.scale = scale;
+        }
+        self.scale
+    }
+}
+
+/// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct ClothColliders {
+    pub(super) colliders: Vec<MovingCollider>,
+    /// The boxes around them during the step, in the world \[m\].
+    pub(super) boxes: Vec<(Vec3, Vec3)>,
+    /// The bodies that cloth pushes, in the order of entities.
+    pub(super) bodies: Vec<ColliderBody>,
+    solids: Solids,
+}
+
+/// A simple solid during a step.
+#[derive(Clone, Debug)]
+pub(super) struct MovingCollider {
+    pub entity: Entity,
+    /// Which of the entity's colliders, and which part of a compound.
+    pub part: (u32, u32),
+    pub solid: Solid,
+    pub friction: f32,
+    pub margin: f32,
+    pub layers: ClothLayers,
+    pub start: Isometry3d,
+    pub end: Isometry3d,
+    /// Which of the bodies it belongs to.
+    pub body: Option<usize>,
+}
+
+/// What all parts of a collider have in common.
+struct Whole<'a> {
+    step: u64,
+    entity: Entity,
+    part: u32,
+    scale: Vec3,
+    shape: &'a ColliderShape,
+    friction: f32,
+    margin: f32,
+    layers: ClothLayers,
+    start: Isometry3d,
+    end: Isometry3d,
+    body: Option<usize>,
+}
+
+impl ClothColliders {
+    /// The number of colliders; each part of a compound counts.
+    pub fn len(&self) -> usize {
+        self.colliders.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.colliders.is_empty()
+    }
+
+    fn add(&mut self, whole: &Whole) {
+        if let ColliderShape::Compound(compound) = whole.shape {
+            for (k, (at, shape)) in compound.parts().iter().enumerate() {
+                let place = Isometry3d::new(Vec3::from(at.translation) * whole.scale, at.rotation);
+                self.add_part(whole, k as u32, shape, place);
+            }
+        } else {
+            self.add_part(whole, 0, whole.shape, Isometry3d::IDENTITY);
+        }
+    }
+
+    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ColliderShape, at: Isometry3d) {
+        let (rotation, scale) = scaled_axes(whole.scale, at.rotation);
+        let at = Isometry3d::new(at.translation, rotation);
+        let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
+            return;
+        };
+        self.colliders.push(MovingCollider {
+            entity: whole.entity,
+            part: (whole.part, part),
+            solid,
+            friction: whole.friction,
+            margin: whole.margin,
+            layers: whole.layers,
+            start: whole.start * at,
+            end: whole.end * at,
+            body: whole.body,
+        });
+    }
+
+    /// The place of a body in the list of bodies.
+    fn body(&mut self, body: &ColliderBody) -> usize {
+        let found = self.bodies.binary_search_by_key(&body.body, |b| b.body);
+        found.unwrap_or_else(|at| {
+            self.bodies.insert(at, *body);
+            at
+        })
+    }
+}
+
+/// How a part that is turned like this lies in a whole of this scale, and its scale along its own axes. Exact where the axes of
+/// the two agree, or the scale is the same along all; no shape here can be sheared.
+fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
+    if rotation == Quat::IDENTITY {
+        return (rotation, scale);
+    }
+    // What is mirrored turns the other way round.
+    let (size, side) = (scale.abs(), Vec3::ONE.copysign(scale));
+    let axis = rotation.xyz() * side * side.element_product();
+    let rotation = Quat::from_xyzw(axis.x, axis.y, axis.z, rotation.w);
+    if size == Vec3::splat(size.x) {
+        return (rotation, scale);
+    }
+    let along = Mat3::from_quat(rotation);
+    let sizes = [along.x_axis, along.y_axis, along.z_axis].map(|axis| (size * axis).length());
+    (rotation, side * Vec3::from(sizes))
+}
+
+/// Reads where the colliders are at the start and at the end of the step, and takes those of [`ExternalColliders`].
+///
+/// One that is wrong, or whose transform is not finite, is reported and left out.
+pub fn snapshot_colliders(
+    step: Res<ClothStep>,
+    helper: TransformHelper,
+    mut list: ResMut<ClothColliders>,
+    mut external: ResMut<ExternalColliders>,
+    mut colliders: Query<(
+        Entity,
+        &ClothCollider,
+        Option<&ClothLayers>,
+        &mut ColliderPose,
+        &mut ClothStatus,
+    )>,
+    mut others: Query<&mut ClothStatus, Without<ClothCollider>>,
+    commands: ParallelCommands,
+) {
+    let list = &mut *list;
+    list.colliders.clear();
+    list.boxes.clear();
+    list.bodies.clear();
+    for (entity, collider, layers, mut pose, mut status) in &mut colliders {
+        let errors = collider.errors();
+        let valid = errors.is_empty();
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Collider,
+            errors,
+        );
+        let Ok(transform) = helper.compute_global_transform(entity) else {
+            continue;
+        };
+        let place = split(&transform);
+        let error = place.as_ref().err().cloned();
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Transform,
+            error,
+        );
+        let (Ok((end, scale)), true) = (place, valid) else {
+            pose.place = None;
+            continue;
+        };
+        let scale = pose.settle(scale);
+        let start = pose
+            .place
+            .filter(|start| {
+                let moved = start.translation.distance(end.translation);
+                moved <= ClothCollider::TELEPORT_SPEED * step.world_seconds()
+            })
+            .unwrap_or(end);
+        pose.place = Some(end);
+        list.add(&Whole {
+            step: step.steps(),
+            entity,
+            part: 0,
+            scale,
+            shape: &collider.shape,
+            friction: collider.friction,
+            margin: collider.margin,
+            layers: layers.copied().unwrap_or_default(),
+            start,
+            end,
+            body: None,
+        });
+    }
+    take_external(list, &mut external, step.steps(), &mut others, &commands);
+    // The order in which they are solved must not depend on how entities are stored.
+    list.colliders
+        .sort_unstable_by_key(|collider| (collider.entity, collider.part));
+    list.solids.forget(step.steps());
+    let ClothColliders {
+        colliders, boxes, ..
+    } = list;
+    boxes.extend(colliders.iter().map(MovingCollider::around));
+}
+
+fn take_external(
+    list: &mut ClothColliders,
+    external: &mut ExternalColliders,
+    step: u64,
+    statuses: &mut Query<&mut ClothStatus, Without<ClothCollider>>,
+    commands: &ParallelCommands,
+) {
+    let colliders = &mut external.colliders;
+    // Stable sorts need memory.
+    colliders.sort_unstable_by_key(|collider| (collider.entity, collider.part));
+    for collider in colliders
+        .iter()
+        .filter_map(|collider| collider.body.as_ref())
+    {
+        if body_errors(collider).next().is_none() {
+            list.body(collider);
+        }
+    }
+    for parts in colliders.chunk_by(|a, b| a.entity == b.entity) {
+        let mut errors = Vec::new();
+        for collider in parts {
+            let before = errors.len();
+            errors.extend(external_errors(collider));
+            if errors.len() > before {
+                continue;
+            }
+            let body = collider.body.as_ref().map(|body| list.body(body));
+            list.add(&Whole {
+                step,
+                entity: collider.entity,
+                part: collider.part,
+                scale: Vec3::ONE,
+                shape: &collider.shape,
+                friction: collider.friction,
+                margin: collider.margin,
+                layers: collider.layers,
+                start: collider.start,
+                end: collider.end,
+                body,
+            });
+        }
+        let entity = parts[0].entity;
+        if let Ok(mut status) = statuses.get_mut(entity) {
+            ClothStatus::update(&mut status, entity, commands, ErrorSource::Collider, errors);
+        } else if !errors.is_empty() {
+            // They are reported in the next step.
+            commands.command_scope(|mut commands| {
+                if let Ok(mut entity) = commands.get_entity(entity) {
+                    entity.try_insert_if_new(ClothStatus::default());
+                }
+            });
+        }
+    }
+    colliders.clear();
+}
+
+/// What is wrong with a collider from elsewhere.
+fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
+    let places = [collider.start, collider.end].into_iter().filter_map(|at| {
+        let finite = at.translation.is_finite() && at.rotation.is_finite();
+        (!finite).then(|| ClothErrorKind::Transform {
+            value: format!("{at:?}"),
+        })
+    });
+    check(&collider.shape, collider.friction, collider.margin)
+        .into_iter()
+        .chain(places)
+        .chain(collider.body.iter().flat_map(body_errors))
+}
+
+/// What is wrong with a body.
+fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
+    let error = |field: &str, value: String, allowed: &str| ClothErrorKind::Body {
+        field: field.into(),
+        value,
+        allowed: allowed.into(),
+    };
+    let mass = body.inv_mass;
+    let mass = (!(mass >= 0.0 && mass.is_finite()))
+        .then(|| error("inv_mass", mass.to_string(), "at least 0 and finite [1/kg]"));
+    let inertia = body.inv_inertia;
+    let [x, y, z] = [inertia.x_axis.x, inertia.y_axis.y, inertia.z_axis.z];
+    let right = inertia.is_finite() && x >= 0.0 && y >= 0.0 && z >= 0.0;
+    let inertia = (!right).then(|| {
+        let allowed = "finite, and not negative about any axis [1/(kg m²)]";
+        error("inv_inertia", inertia.to_string(), allowed)
+    });
+    let vectors = [
+        ("ColliderBody.center_of_mass", body.center_of_mass),
+        ("ColliderBody.linear_velocity", body.linear_velocity),
+        ("ColliderBody.angular_velocity", body.angular_velocity),
+    ];
+    let vectors = vectors
+        .into_iter()
+        .filter_map(|(field, value)| ClothErrorKind::vector(field, value));
+    mass.into_iter().chain(inertia).chain(vectors)
+}
+
+impl MovingCollider {
+    /// What tells it from others, from step to step.
+    pub fn name(&self) -> (Entity, (u32, u32)) {
+        (self.entity, self.part)
+    }
+
+    /// Where it is at a part of the step, in the world.
+    pub fn at(&self, fraction: f32) -> Isometry3d {
+        Isometry3d::new(
+            self.start.translation.lerp(self.end.translation, fraction),
+            self.start.rotation.slerp(self.end.rotation, fraction),
+        )
+    }
+
+    /// The box around it during the step, margin included, in the world \[m\].
+    fn around(&self) -> (Vec3, Vec3) {
+        const EVERYWHERE: (Vec3, Vec3) = (Vec3::MIN, Vec3::MAX);
+        let margin = Vec3::splat(self.margin);
+        self.solid.range().map_or(EVERYWHERE, |range| {
+            let (low, high) = swept(range, &self.start, &self.end);
+            (low - margin, high + margin)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use bevy_math::EulerRot;
+
+    use super::*;
+
+    #[test]
+    fn a_part_that_is_turned_by_quarters_or_scaled_alike_is_placed_exactly() {
+        let quarters = (0..64u8).map(|k| {
+            let [x, y, z] = [k & 3, k >> 2 & 3, k >> 4].map(|n| f32::from(n) * FRAC_PI_2);
+            Quat::from_euler(EulerRot::XYZ, x, y, z)
+        });
+        let any = Quat::from_euler(EulerRot::XYZ, 0.7, -0.4, 2.0);
+        let signs = (0..8u8).map(|k| {
+            let sign = |bit: u8| if k >> bit & 1 == 0 { 1.0 } else { -1.0 };
+            Vec3::new(sign(0), sign(1), sign(2))
+        });
+        for (sign, turn) in signs.flat_map(|s| quarters.clone().chain([any]).map(move |q| (s, q))) {
+            let sizes = [Vec3::splat(2.0), Vec3::new(1.0, 2.0, 3.0)];
+            for size in &sizes[..if turn == any { 1 } else { 2 }] {
+                let scale = sign * size;
+                let (rotation, along) = scaled_axes(scale, turn);
+                for p in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.3, -0.5, 0.7)] {
+                    let (is, should) = (rotation * (along * p), scale * (turn * p));
+                    assert!(
+                        (is - should).length() < 1e-5,
+                        "{scale} {turn}: {is}, not {should}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Shapes at the scale of their entities, as the kernels take them.
+
+use std::{collections::BTreeMap, fmt, sync::Arc};
+
+use bevy_math::{Isometry3d, Mat3, Vec2, Vec3, Vec4};
+
+use super::{ColliderShape, ConvexHull, HeightField, TriMesh, surface::Surface};
+
+/// A shape at the scale of its entity.
+#[derive(Clone)]
+pub(crate) enum Solid {
+    Sphere { radius: f32 },
+    HalfSpace,
+    Capsule { radii: [f32; 2], half_length: f32 },
+    Cuboid { half_size: Vec3 },
+    Cylinder { radius: f32, half_height: f32 },
+    Hull(Arc<Hull>),
+    Mesh(Arc<Surface>),
+    Terrain { field: HeightField, scale: Vec3 },
+}
+
+impl fmt::Debug for Solid {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{:?}", self.kind())
+    }
+}
+
+/// Which system keeps particles out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sphere,
+    HalfSpace,
+    Capsule,
+    Cuboid,
+    Other,
+}
+
+/// A convex hull at the scale of its entity.
+#[derive(Debug)]
+pub(crate) struct Hull {
+    pub planes: Vec<Vec4>,
+    pub size: f32,
+    range: (Vec3, Vec3),
+}
+
+/// Hulls and meshes at the scales at which they are in use.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solids(BTreeMap<(usize, [u32; 3]), (u64, Option<Solid>)>);
+
+impl Solids {
+    /// What was not used in this step is forgotten.
+    pub fn forget(&mut self, step: u64) {
+        self.0.retain(|_, (used, _)| *used == step);
+    }
+
+    /// A shape at this scale; `None` where nothing is left of it.
+    pub fn scaled(&mut self, step: u64, shape: &ColliderShape, scale: Vec3) -> Option<Solid> {
+        let most = scale.abs().max_element();
+        let solid = match *shape {
+            ColliderShape::Sphere { radius } => Solid::Sphere {
+                radius: radius * most,
+            },
+            ColliderShape::HalfSpace => Solid::HalfSpace,
+            ColliderShape::Capsule {
+                radius,
+                half_length,
+            } => Solid::Capsule {
+                radii: [radius * most; 2],
+                half_length: half_length * most,
+            },
+            ColliderShape::TaperedCapsule {
+                bottom_radius,
+                top_radius,
+                half_length,
+            } => Solid::Capsule {
+                radii: [bottom_radius * most, top_radius * most],
+                half_length: half_length * most,
+            },
+            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
+                half_size: half_size * scale.abs(),
+            },
+            ColliderShape::Cylinder {
+                radius,
+                half_height,
+            } => Solid::Cylinder {
+                radius: radius * most,
+                half_height: half_height * most,
+            },
+            ColliderShape::HeightField(ref field) => Solid::Terrain {
+                field: field.clone(),
+                scale,
+            },
+            ColliderShape::ConvexHull(ref hull) => {
+                return self.kept(step, hull.id(), scale, || {
+                    Some(Solid::Hull(Arc::new(Hull::new(hull, scale)?)))
+                });
+            }
+            ColliderShape::TriMesh(ref mesh) => {
+                return self.kept(step, mesh.id(), scale, || Solid::mesh(mesh, scale));
+            }
+            ColliderShape::Compound(_) => return None,
+        };
+        Some(solid)
+    }
+
+    fn kept(
+        &mut self,
+        step: u64,
+        id: usize,
+        scale: Vec3,
+        make: impl FnOnce() -> Option<Solid>,
+    ) -> Option<Solid> {
+        let key = (id, scale.to_array().map(f32::to_bits));
+        let (used, solid) = self.0.entry(key).or_insert_with(|| (step, make()));
+        *used = step;
+        solid.clone()
+    }
+}
+
+impl Hull {
+    /// An edge or corner where planes at a distance of 1 meet further away than this from it gets a plane of its own.
+    const SHARP: f32 = 2.0;
+
+    fn new(hull: &ConvexHull, scale: Vec3) -> Option<Self> {
+        let points: Vec<Vec3> = hull.points().iter().map(|p| *p * scale).collect();
+        let center = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
+        let mut planes: Vec<Vec4> = Vec::new();
+        // For each corner and each edge the normals of the faces there.
+        let mut around = BTreeMap::<[u32; 2], Vec<Vec3>>::new();
+        for &[a, b, c] in hull.triangles() {
+            let [p, q, r] = [a, b, c].map(|k| points[k as usize]);
+            let normal = (q - p).cross(r - p).normalize_or_zero();
+            if normal == Vec3::ZERO {
+                continue;
+            }
+            let normal = if normal.dot(p - center) < 0.0 {
+                -normal
+            } else {
+                normal
+            };
+            add(&mut planes, normal, p);
+            for [i, j] in [[a, b], [b, c], [c, a], [a, a], [b, b], [c, c]] {
+                around.entry([i.min(j), i.max(j)]).or_default().push(normal);
+            }
+        }
+        for ([i, _], normals) in around {
+            let middle = normals.iter().sum::<Vec3>().normalize_or_zero();
+            let sharp = normals.iter().any(|n| n.dot(middle) < 1.0 / Self::SHARP);
+            if sharp && middle != Vec3::ZERO {
+                add(&mut planes, middle, points[i as usize]);
+            }
+        }
+        // Rounding must leave no corner outside.
+        for plane in &mut planes {
+            let heights = points.iter().map(|p| plane.truncate().dot(*p));
+            plane.w = heights.fold(f32::MIN, f32::max);
+        }
+        let inside = planes
+            .iter()
+            .map(|plane| plane.w - plane.truncate().dot(center));
+        let size = inside.fold(f32::MAX, f32::min);
+        let low = points.iter().copied().reduce(Vec3::min)?;
+        let high = points.iter().copied().reduce(Vec3::max)?;
+        (planes.len() > 3 && size > 0.0).then_some(Self {
+            planes,
+            size,
+            range: (low, high),
+        })
+    }
+}
+
+/// Adds a plane unless it is there.
+fn add(planes: &mut Vec<Vec4>, normal: Vec3, point: Vec3) {
+    const SAME: f32 = 1.0 - 1e-6;
+    if planes
+        .iter()
+        .all(|plane| plane.truncate().dot(normal) < SAME)
+    {
+        planes.push(normal.extend(normal.dot(point)));
+    }
+}
+
+impl Solid {
+    fn mesh(mesh: &TriMesh, scale: Vec3) -> Option<Self> {
+        Some(Self::Mesh(Arc::new(Surface::new(mesh, scale)?)))
+    }
+
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Sphere { .. } => Kind::Sphere,
+            Self::HalfSpace => Kind::HalfSpace,
+            Self::Capsule { .. } => Kind::Capsule,
+            Self::Cuboid { .. } => Kind::Cuboid,
+            _ => Kind::Other,
+        }
+    }
+
+    /// The box around it in its own axes; `None` where it has no end.
+    pub fn range(&self) -> Option<(Vec3, Vec3)> {
+        let around = |half: Vec3| (-half, half);
+        Some(match self {
+            Self::Sphere { radius } => around(Vec3::splat(*radius)),
+            Self::HalfSpace => return None,
+            Self::Capsule { radii, half_length } => {
+                let radius = radii[0].max(radii[1]);
+                around(Vec3::new(radius, half_length + radius, radius))
+            }
+            Self::Cuboid { half_size } => around(*half_size),
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => around(Vec3::new(*radius, *half_height, *radius)),
+            Self::Hull(hull) => hull.range,
+            Self::Mesh(surface) => surface.range(),
+            Self::Terrain { field, scale } => {
+                let half = 0.5 * field.size() * Vec2::new(scale.x, scale.z).abs();
+                let (low, high) = field.range();
+                let high = (low * scale.y).max(high * scale.y);
+                (
+                    Vec3::new(-half.x, -DEEP, -half.y),
+                    Vec3::new(half.x, high, half.y),
+                )
+            }
+        })
+    }
+
+    /// What tells it from others, as bits.
+    pub fn bits(&self) -> [u64; 3] {
+        let two = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
+        match self {
+            Self::Sphere { radius } => [1, two(*radius, 0.0), 0],
+            Self::HalfSpace => [2, 0, 0],
+            Self::Capsule { radii, half_length } => {
+                [3, two(radii[0], radii[1]), two(*half_length, 0.0)]
+            }
+            Self::Cuboid { half_size } => [4, two(half_size.x, half_size.y), two(half_size.z, 0.0)],
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => [5, two(*radius, *half_height), 0],
+            Self::Hull(hull) => [6, Arc::as_ptr(hull) as u64, 0],
+            Self::Mesh(surface) => [7, Arc::as_ptr(surface) as u64, 0],
+            Self::Terrain { field, scale } => [8, field.id() as u64, two(scale.x, scale.z)],
+        }
+    }
+}
+
+/// How far below its surface terrain is looked for \[m\].
+const DEEP: f32 = 1e4;
+
+/// The box around a box that moves from one place to another, on the way as well.
+pub(crate) fn swept(
+    (low, high): (Vec3, Vec3),
+    start: &Isometry3d,
+    end: &Isometry3d,
+) -> (Vec3, Vec3) {
+    let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let [a, b] = [start, end].map(|at| {
+        let middle = at.rotation * center + Vec3::from(at.translation);
+        let m = Mat3::from_quat(at.rotation);
+        let half = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
+        (middle - half, middle + half)
+    });
+    // On the way it turns: a point at the distance r from the axis leaves the chord by r (1 − cos(angle/2)) at most.
+    let half_turn = start.rotation.dot(end.rotation).abs().min(1.0);
+    let bulge = Vec3::splat((1.0 - half_turn) * (center.length() + half.length()));
+    (a.0.min(b.0) - bulge, a.1.max(b.1) + bulge)
+}
