@@ -1,4 +1,4 @@
-//! Draws what a cloth consists of. All of it is off until asked for:
+//! Draws what a cloth consists of, and what it collides with. All of it is off until asked for:
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -8,6 +8,8 @@
 //!     store.config_mut::<ClothGizmos>().1.pins = true;
 //! }
 //! ```
+
+mod colliders;
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_color::{Color, palettes::tailwind};
@@ -19,13 +21,14 @@ use bevy_gizmos::{
 };
 use bevy_math::{Vec3, bounding::Aabb3d};
 use bevy_reflect::prelude::*;
+use bevy_transform::TransformSystems;
 use tailorbird_cloth::{prelude::*, topology::constraints::ConstraintFamily};
 
-/// Draws what a cloth consists of, as [`ClothGizmos`] says. Needs Bevy's `GizmoPlugin` (part of `DefaultPlugins`) to be
+/// Draws what a cloth consists of and what it collides with, as [`ClothGizmos`] says. Needs Bevy's `GizmoPlugin` (part of `DefaultPlugins`) to be
 /// added before; does nothing without.
 pub struct ClothDebugPlugin;
 
-/// What is drawn of each cloth; everything is off by default.
+/// What is drawn of each cloth and collider; everything is off by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, GizmoConfigGroup)]
 #[reflect(Default)]
 pub struct ClothGizmos {
@@ -43,11 +46,19 @@ pub struct ClothGizmos {
     pub normals: bool,
     /// The box around each cloth.
     pub bounds: bool,
+    /// The shape of each [`ClothCollider`], without its margin; of a half-space a square of 10 m. What is in
+    /// [`ExternalColliders`] is for its engine to draw.
+    pub colliders: bool,
 }
 
 impl ClothGizmos {
+    /// Whether anything of a cloth is drawn.
     fn shows_any(&self) -> bool {
-        *self != Self::default()
+        let no_cloth = Self {
+            colliders: self.colliders,
+            ..Self::default()
+        };
+        *self != no_cloth
     }
 
     fn color(&self, family: ConstraintFamily) -> Option<Color> {
@@ -65,13 +76,25 @@ impl Plugin for ClothDebugPlugin {
         if !app.is_plugin_added::<GizmoPlugin>() {
             return;
         }
-        app.init_gizmo_group::<ClothGizmos>()
-            .add_systems(PostUpdate, draw.before(GizmoMeshSystems).run_if(shows_any));
+        app.init_gizmo_group::<ClothGizmos>().add_systems(
+            PostUpdate,
+            (
+                draw.run_if(shows_any),
+                colliders::draw
+                    .after(TransformSystems::Propagate)
+                    .run_if(shows_colliders),
+            )
+                .before(GizmoMeshSystems),
+        );
     }
 }
 
 fn shows_any(store: Res<GizmoConfigStore>) -> bool {
     store.config::<ClothGizmos>().1.shows_any()
+}
+
+fn shows_colliders(store: Res<GizmoConfigStore>) -> bool {
+    store.config::<ClothGizmos>().1.colliders
 }
 
 fn draw(

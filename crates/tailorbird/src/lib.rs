@@ -27,6 +27,20 @@
 //!
 //! The simulation is in [`cloth`], a crate of its own that needs no renderer. This crate adds what a game needs on top;
 //! [`ClothPlugins`](plugins::ClothPlugins) lists the parts.
+//!
+//! # Guide
+//!
+//! | page | about |
+//! | --- | --- |
+//! | [`mesh`] | cloth made of meshes: garments from glTF, pins that are painted, seams, what is repaired |
+//! | [`cloth::pins`], [`cloth::attachment`], [`cloth::motion`] | what holds a cloth: pins, bones and other entities, targets of an animation |
+//! | [`cloth::inertia`] | a cloth on something that moves: what it feels, teleports, speed limits |
+//! | [`cloth::collider`] | what a cloth collides with: shapes, layers, bodies |
+//! | `tailorbird_avian`, `tailorbird_rapier` | bodies of physics engines |
+//! | [`cloth::material`], [`cloth::wind`] | fabrics, air |
+//! | [`cloth::solver`], [`cloth::settings`], [`cloth::sleep`] | accuracy and what it costs |
+//! | [`picking`], [`drag`] | the pointer |
+//! | [`cloth::error`] | what happens to wrong input |
 
 pub use tailorbird_cloth as cloth;
 
