@@ -1,0 +1,38 @@
+//! What the bridges between cloth and physics engines have in common: which colliders are near a cloth, how they moved, what a
+//! push does to a body, and when it wakes one that sleeps.
+//!
+//! Users take `tailorbird_avian` or `tailorbird_rapier`, which re-export what they need of this. A bridge to another engine is
+//! two systems of a hundred lines: one in [`ClothBridgeSystems::Collect`] that pushes the engine's colliders to
+//! [`ExternalColliders`](tailorbird_cloth::collider::ExternalColliders), one in [`ClothBridgeSystems::Apply`] that gives
+//! bodies what [`ClothReactions`](tailorbird_cloth::collider::ClothReactions) says.
+
+mod load;
+mod near;
+mod pose;
+mod shapes;
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+
+pub use self::{
+    load::{ClothLoad, SleepLimits},
+    near::{ClothBoxes, WorldBox},
+    pose::{TrackedPose, moved},
+    shapes::{Piece, ShapeCache},
+};
+
+/// The systems of a bridge, in the schedule in which cloth is simulated.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ClothBridgeSystems {
+    /// Tells cloth where the engine's colliders are. After the engine's step, before
+    /// [`ClothSystems::Prepare`](tailorbird_cloth::schedule::ClothSystems::Prepare).
+    Collect,
+    /// Gives bodies what cloth did to them. After
+    /// [`ClothSystems::Simulate`](tailorbird_cloth::schedule::ClothSystems::Simulate).
+    Apply,
+}
+
+/// On the entity of an engine's collider: cloth does not see it.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothCollisionDisabled;
