@@ -10,8 +10,11 @@ use tailorbird::{prelude::*, sphere_controls::move_spheres};
 
 use super::{
     camera::OrbitCamera,
+    crates::CratesPlugin,
     fabric::Fabrics,
-    scenes::{SceneAssets, SceneCloth, SceneEntity, SceneSphere, spawn_scene},
+    garment,
+    moving::MovingPlugin,
+    scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind, SceneSphere, spawn_scene},
     settings::DemoSettings,
     shortcuts::use_shortcuts,
     stage::StagePlugin,
@@ -32,10 +35,13 @@ pub struct ApplySettings;
 
 impl Plugin for DemoPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(self.stage.clone())
+        app.add_plugins((self.stage.clone(), MovingPlugin, CratesPlugin))
             .insert_resource(self.settings.clone())
             .init_resource::<Fabrics>()
-            .add_systems(Update, use_shortcuts.before(ApplySettings))
+            .add_systems(
+                Update,
+                (use_shortcuts.before(ApplySettings), garment::add_mipmaps),
+            )
             .add_systems(
                 Update,
                 (
@@ -60,7 +66,7 @@ impl Plugin for DemoPlugin {
 fn show_scene(
     mut commands: Commands,
     settings: Res<DemoSettings>,
-    mut shown: Local<Option<(super::scenes::SceneKind, u32)>>,
+    mut shown: Local<Option<(SceneKind, u32)>>,
     old: Query<Entity, With<SceneEntity>>,
     mut cameras: Query<&mut OrbitCamera>,
     mut assets: SceneAssets,
@@ -104,9 +110,10 @@ fn apply_cloth(
         material.set_if_neq(settings.material);
         solver.set_if_neq(settings.solver);
         shading.set_if_neq(settings.shading);
-        if cloth.set_if_neq(settings.scene.cloth(settings.resolution)) {
+        let shape = settings.scene.cloth(settings.resolution);
+        if shape.is_some_and(|shape| cloth.set_if_neq(shape)) {
             // They name particles of the grid as it was.
-            pins.release_user_pins();
+            *pins = settings.scene.pins(settings.resolution);
         }
     }
 }
@@ -165,6 +172,10 @@ fn apply_fabric(
         return;
     }
     *shown = Some(wanted);
+    if settings.scene == SceneKind::Garment {
+        // Its meshes have materials of their own.
+        return;
+    }
     for entity in &cloths {
         commands.entity(entity).insert(assets.cloth(&settings));
     }
@@ -201,6 +212,7 @@ fn apply_gizmos(settings: Res<DemoSettings>, mut store: ResMut<GizmoConfigStore>
         pins: look.pins,
         normals: look.normals,
         bounds: look.bounds,
+        colliders: look.colliders,
     };
 }
 

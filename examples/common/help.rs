@@ -11,7 +11,7 @@ pub const CONTROLS: [(&str, &str); 12] = [
     ("right mouse button", "turn the camera"),
     ("middle mouse button", "move the camera"),
     ("wheel", "zoom"),
-    ("1, 2, 3, 4", "scenes"),
+    ("1 to 8", "scenes"),
     ("R", "reset"),
     ("Space, N", "pause, single step"),
 ];

@@ -25,7 +25,7 @@ use bevy::{
 use tailorbird::prelude::*;
 
 use super::{
-    actor::Actor, apply::DemoPlugin, graphics::check_driver, script::Script,
+    actor::Actor, apply::DemoPlugin, garment, graphics::check_driver, script::Script,
     settings::DemoSettings, stage::StagePlugin,
 };
 
@@ -238,6 +238,7 @@ pub fn plugins(size: UVec2) -> bevy::app::PluginGroupBuilder {
             synchronous_pipeline_compilation: true,
             ..default()
         })
+        .set(garment::gltf())
         .disable::<WinitPlugin>()
         .disable::<PipelinedRenderingPlugin>()
 }
@@ -255,7 +256,7 @@ pub fn complete(app: &mut App) {
 ///
 /// # Errors
 /// What went wrong, in words.
-pub fn save(image: &Image, path: &Path) -> Result<(), String> {
+fn save(image: &Image, path: &Path) -> Result<(), String> {
     let picture = image
         .clone()
         .try_into_dynamic()

@@ -46,7 +46,7 @@ fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
 }
 
 fn scene(ui: &mut Ui, settings: &mut DemoSettings) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for scene in SceneKind::ALL {
             let chosen = settings.scene == scene;
             if ui.selectable_label(chosen, scene.name()).clicked() && !chosen {

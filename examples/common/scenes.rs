@@ -1,11 +1,13 @@
-//! The four scenes: what hangs, blows or falls in each. The same functions feed the demo, the tests and the pictures.
+//! The scenes: what hangs, blows or falls in each. The same functions feed the demo, the tests and the pictures.
 
 use std::{f32::consts::FRAC_PI_2, fmt, str::FromStr};
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tailorbird::prelude::*;
 
-use super::{camera::OrbitCamera, fabric::Fabrics, settings::DemoSettings};
+use super::{
+    camera::OrbitCamera, character, crates, fabric::Fabrics, garment, props, settings::DemoSettings,
+};
 
 /// Everything that a scene spawns, so that it can be cleared away.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -34,11 +36,28 @@ pub enum SceneKind {
     Tablecloth,
     /// Held by its corners over a ball that the keys move.
     Ball,
+    /// Worn by somebody who runs, jumps, and is put elsewhere now and then.
+    Cape,
+    /// Hangs from the yard of a boat that pitches and rolls.
+    Banner,
+    /// A skirt of two meshes and materials, from a glTF file, on a figure that the keys move.
+    Garment,
+    /// Bodies of a physics engine fall on a sheet that carries them.
+    Crates,
 }
 
 impl SceneKind {
-    /// All four, in the order of the keys 1 to 4.
-    pub const ALL: [Self; 4] = [Self::Curtain, Self::Flag, Self::Tablecloth, Self::Ball];
+    /// All of them, in the order of the keys from 1 on.
+    pub const ALL: [Self; 8] = [
+        Self::Curtain,
+        Self::Flag,
+        Self::Tablecloth,
+        Self::Ball,
+        Self::Cape,
+        Self::Banner,
+        Self::Garment,
+        Self::Crates,
+    ];
 
     /// Its name in the command line, the panel and the names of pictures.
     pub const fn name(self) -> &'static str {
@@ -47,15 +66,19 @@ impl SceneKind {
             Self::Flag => "flag",
             Self::Tablecloth => "tablecloth",
             Self::Ball => "ball",
+            Self::Cape => "cape",
+            Self::Banner => "banner",
+            Self::Garment => "garment",
+            Self::Crates => "crates",
         }
     }
 
     /// The preset that it starts with.
     pub const fn preset(self) -> &'static str {
         match self {
-            Self::Curtain | Self::Tablecloth => "cotton",
-            Self::Flag => "silk",
-            Self::Ball => "denim",
+            Self::Curtain | Self::Tablecloth | Self::Cape | Self::Garment => "cotton",
+            Self::Flag | Self::Banner => "silk",
+            Self::Ball | Self::Crates => "denim",
         }
     }
 
@@ -77,7 +100,16 @@ impl SceneKind {
                 },
                 ..Wind::steady(Vec3::new(0.2, 0.0, 0.9))
             },
-            Self::Tablecloth | Self::Ball => Wind::default(),
+            Self::Banner => Wind {
+                gusts: Gusts {
+                    strength: 0.6,
+                    period: 2.0,
+                },
+                ..Wind::steady(Vec3::new(1.5, 0.0, 2.5))
+            },
+            Self::Tablecloth | Self::Ball | Self::Cape | Self::Garment | Self::Crates => {
+                Wind::default()
+            }
         }
     }
 
@@ -87,6 +119,10 @@ impl SceneKind {
             Self::Curtain => Vec2::new(2.0, 1.5),
             Self::Flag => Vec2::new(1.8, 1.2),
             Self::Tablecloth | Self::Ball => Vec2::new(2.0, 2.0),
+            Self::Cape => Vec2::new(1.1, 1.15),
+            Self::Banner => Vec2::new(1.2, 1.5),
+            Self::Garment => Vec2::new(1.0, 1.0),
+            Self::Crates => Vec2::new(2.4, 2.4),
         }
     }
 
@@ -97,6 +133,11 @@ impl SceneKind {
             Self::Flag => Color::srgb(0.93, 0.52, 0.10),
             Self::Tablecloth => Color::srgb(0.90, 0.88, 0.82),
             Self::Ball => Color::srgb(0.16, 0.38, 0.42),
+            Self::Cape => Color::srgb(0.45, 0.07, 0.13),
+            Self::Banner => Color::srgb(0.10, 0.30, 0.55),
+            // It has materials of its own.
+            Self::Garment => Color::WHITE,
+            Self::Crates => Color::srgb(0.24, 0.30, 0.36),
         }
     }
 
@@ -104,7 +145,8 @@ impl SceneKind {
     pub const fn sphere_radius(self) -> f32 {
         match self {
             Self::Curtain => 0.25,
-            Self::Flag => 0.2,
+            Self::Flag | Self::Cape | Self::Banner | Self::Crates => 0.2,
+            Self::Garment => 0.1,
             Self::Tablecloth => 0.5,
             Self::Ball => 0.3,
         }
@@ -117,6 +159,10 @@ impl SceneKind {
             Self::Flag => Vec3::new(-0.6, radius, 0.9),
             Self::Tablecloth => Vec3::new(0.0, radius, 0.0),
             Self::Ball => Vec3::new(0.0, 0.95, 0.0),
+            Self::Cape => Vec3::new(0.0, radius, 0.0),
+            Self::Banner => Vec3::new(-1.6, radius, 1.6),
+            Self::Garment => Vec3::new(0.0, radius, 0.5),
+            Self::Crates => Vec3::new(0.0, radius, 0.0),
         }
     }
 
@@ -127,6 +173,10 @@ impl SceneKind {
             Self::Flag => (Vec3::new(0.8, 1.75, 0.0), -16.0, 2.0, 4.2),
             Self::Tablecloth => (Vec3::new(0.0, 0.42, 0.0), 30.0, 20.0, 3.7),
             Self::Ball => (Vec3::new(0.0, 0.85, 0.0), 28.0, 20.0, 4.3),
+            Self::Cape => (Vec3::new(0.0, 0.95, 0.0), 20.0, 12.0, 6.2),
+            Self::Banner => (Vec3::new(0.0, 1.45, 0.0), 25.0, 8.0, 7.5),
+            Self::Garment => (Vec3::new(0.0, 0.64, 0.0), 55.0, 10.0, 2.7),
+            Self::Crates => (Vec3::new(0.0, 1.05, 0.0), 28.0, 27.0, 5.6),
         };
         OrbitCamera::new(focus, yaw, pitch, distance)
     }
@@ -138,23 +188,29 @@ impl SceneKind {
         cells.as_uvec2().max(UVec2::ONE) + 1
     }
 
-    /// Its cloth at rest.
-    pub fn cloth(self, longer: u32) -> Cloth {
+    /// Its cloth at rest; none where that comes from a file.
+    pub fn cloth(self, longer: u32) -> Option<Cloth> {
         let grid = Cloth::grid(self.size(), self.resolution(longer));
         match self {
-            Self::Flag => grid,
-            Self::Curtain => grid.with_origin(Vec2::new(0.5, 0.0)),
-            Self::Tablecloth | Self::Ball => grid.centered(),
+            Self::Flag => Some(grid),
+            Self::Curtain | Self::Cape | Self::Banner => {
+                Some(grid.with_origin(Vec2::new(0.5, 0.0)))
+            }
+            Self::Tablecloth | Self::Ball | Self::Crates => Some(grid.centered()),
+            Self::Garment => None,
         }
     }
 
-    /// What holds it.
-    pub fn pins(self) -> ClothPins {
+    /// What holds it, with `longer` particles along the longer side.
+    pub fn pins(self, longer: u32) -> ClothPins {
         match self {
             Self::Curtain => corners(&GridCorner::TOP, Vec3::new(0.82, 0.0, 0.0)),
             Self::Flag => ClothPins::edges([GridEdge::Left]),
-            Self::Tablecloth => ClothPins::default(),
+            Self::Tablecloth | Self::Garment => ClothPins::default(),
+            Self::Crates => corners(&GridCorner::ALL, Vec3::new(1.1, 1.1, 0.0)),
             Self::Ball => corners(&GridCorner::ALL, Vec3::new(0.9, 0.9, 0.0)),
+            Self::Cape => character::collar(self.size().x, self.resolution(longer).x),
+            Self::Banner => props::rings(self.resolution(longer).x),
         }
     }
 
@@ -171,6 +227,11 @@ impl SceneKind {
             Self::Tablecloth => Transform::from_xyz(0.03, 1.3, 0.02)
                 .with_rotation(Quat::from_rotation_y(0.3) * flat),
             Self::Ball => Transform::from_xyz(0.0, 1.35, 0.0).with_rotation(flat),
+            Self::Crates => Transform::from_xyz(0.0, 1.6, 0.0).with_rotation(flat),
+            Self::Garment => Transform::IDENTITY,
+            // Within the chest, and in front of the mast.
+            Self::Cape => Transform::from_xyz(0.0, 0.21, 0.0),
+            Self::Banner => Transform::from_xyz(0.0, 2.32, 0.07),
         }
     }
 }
@@ -218,6 +279,7 @@ pub struct SceneAssets<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<StandardMaterial>>,
     fabrics: Res<'w, Fabrics>,
+    server: Res<'w, AssetServer>,
 }
 
 impl SceneAssets<'_> {
@@ -238,7 +300,18 @@ impl SceneAssets<'_> {
         MeshMaterial3d(self.materials.add(material))
     }
 
-    fn painted(&mut self, color: Color, roughness: f32, metallic: f32) -> MaterialOf {
+    /// A scene from a glTF file in the folder of assets.
+    pub fn gltf(&self, path: &'static str) -> WorldAssetRoot {
+        WorldAssetRoot(self.server.load(GltfAssetLabel::Scene(0).from_asset(path)))
+    }
+
+    /// A mesh of this shape.
+    pub fn mesh(&mut self, shape: impl Into<Mesh>) -> Mesh3d {
+        Mesh3d(self.meshes.add(shape))
+    }
+
+    /// A plain material.
+    pub fn painted(&mut self, color: Color, roughness: f32, metallic: f32) -> MaterialOf {
         MeshMaterial3d(self.materials.add(StandardMaterial {
             base_color: color,
             perceptual_roughness: roughness,
@@ -248,34 +321,59 @@ impl SceneAssets<'_> {
     }
 }
 
-type MaterialOf = MeshMaterial3d<StandardMaterial>;
+/// Of something that is drawn.
+pub type MaterialOf = MeshMaterial3d<StandardMaterial>;
 
 /// Spawns a scene.
 pub fn spawn_scene(commands: &mut Commands, settings: &DemoSettings, assets: &mut SceneAssets) {
-    spawn_cloth(commands, settings, assets);
+    let scene = settings.scene;
+    if scene == SceneKind::Garment {
+        return garment::spawn(commands, settings, assets);
+    }
+    let cloth = spawn_cloth(commands, settings, assets);
     spawn_sphere(commands, settings, assets);
-    match settings.scene {
-        SceneKind::Curtain => spawn_rail(commands, assets),
-        SceneKind::Flag => spawn_flagpole(commands, assets),
-        SceneKind::Tablecloth => {}
-        SceneKind::Ball => spawn_posts(commands, assets),
+    match scene {
+        SceneKind::Curtain => props::spawn_rail(commands, assets),
+        SceneKind::Flag => props::spawn_flagpole(commands, assets),
+        SceneKind::Tablecloth | SceneKind::Garment => {}
+        SceneKind::Ball => props::spawn_posts(commands, assets, 0.9, 1.35),
+        SceneKind::Cape => {
+            let chest = character::spawn(commands, assets);
+            commands.entity(cloth).insert(character::inertia());
+            commands.entity(chest).add_child(cloth);
+        }
+        SceneKind::Banner => {
+            let boat = props::spawn_boat(commands, assets);
+            commands.entity(boat).add_child(cloth);
+        }
+        SceneKind::Crates => {
+            props::spawn_posts(commands, assets, 1.1, 1.6);
+            crates::spawn(commands, assets);
+        }
     }
 }
 
-fn spawn_cloth(commands: &mut Commands, settings: &DemoSettings, assets: &mut SceneAssets) {
+fn spawn_cloth(
+    commands: &mut Commands,
+    settings: &DemoSettings,
+    assets: &mut SceneAssets,
+) -> Entity {
     let scene = settings.scene;
-    commands.spawn((
+    let mut cloth = commands.spawn((
         Name::new(scene.name()),
         SceneEntity,
         SceneCloth { size: scene.size() },
-        scene.cloth(settings.resolution),
         settings.material,
         settings.solver,
         settings.shading,
-        scene.pins(),
+        scene.pins(settings.resolution),
         scene.transform(),
         assets.cloth(settings),
     ));
+    if let Some(shape) = scene.cloth(settings.resolution) {
+        cloth.insert(shape);
+    }
+    cloth.id()
 }
 
 fn spawn_sphere(commands: &mut Commands, settings: &DemoSettings, assets: &mut SceneAssets) {
@@ -290,42 +388,4 @@ fn spawn_sphere(commands: &mut Commands, settings: &DemoSettings, assets: &mut S
         assets.sphere(radius),
         assets.painted(Color::srgb(0.78, 0.76, 0.72), 0.35, 0.0),
     ));
-}
-
-/// The rod above the curtain.
-fn spawn_rail(commands: &mut Commands, assets: &mut SceneAssets) {
-    let brass = assets.painted(Color::srgb(0.75, 0.6, 0.35), 0.35, 1.0);
-    let rod = Mesh3d(assets.meshes.add(Cylinder::new(0.014, 1.9)));
-    let knob = Mesh3d(assets.meshes.add(Sphere::new(0.032)));
-    let across =
-        Transform::from_xyz(0.0, 1.87, -0.015).with_rotation(Quat::from_rotation_z(FRAC_PI_2));
-    commands.spawn((SceneEntity, rod, brass.clone(), across));
-    for x in [-0.95, 0.95] {
-        let place = Transform::from_xyz(x, 1.87, -0.015);
-        commands.spawn((SceneEntity, knob.clone(), brass.clone(), place));
-    }
-}
-
-fn spawn_flagpole(commands: &mut Commands, assets: &mut SceneAssets) {
-    let white = assets.painted(Color::srgb(0.85, 0.85, 0.86), 0.4, 0.0);
-    let gold = assets.painted(Color::srgb(0.9, 0.7, 0.3), 0.3, 1.0);
-    let pole = Mesh3d(assets.meshes.add(Cylinder::new(0.022, 2.62)));
-    let knob = Mesh3d(assets.meshes.add(Sphere::new(0.05)));
-    commands.spawn((
-        SceneEntity,
-        pole,
-        white,
-        Transform::from_xyz(0.0, 1.31, 0.0),
-    ));
-    commands.spawn((SceneEntity, knob, gold, Transform::from_xyz(0.0, 2.65, 0.0)));
-}
-
-/// Four posts under the corners of the sheet.
-fn spawn_posts(commands: &mut Commands, assets: &mut SceneAssets) {
-    let wood = assets.painted(Color::srgb(0.42, 0.28, 0.17), 0.7, 0.0);
-    let post = Mesh3d(assets.meshes.add(Cylinder::new(0.02, 1.35)));
-    for (x, z) in [(-0.9, -0.9), (0.9, -0.9), (-0.9, 0.9), (0.9, 0.9)] {
-        let place = Transform::from_xyz(x, 0.675, z);
-        commands.spawn((SceneEntity, post.clone(), wood.clone(), place));
-    }
 }

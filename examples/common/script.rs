@@ -14,7 +14,7 @@
 //! 3.0 wind 5 0 1           # [m/s]
 //! 3.0 gusts 0.5
 //! 3.0 preset silk
-//! 3.0 show wireframe       # or hide: texture, wireframe, particles, stretch, shear, bend, pins, normals, bounds
+//! 3.0 show wireframe       # or hide: texture, wireframe, particles, stretch, shear, bend, pins, normals, bounds, colliders
 //! 4.0 orbit 40 5 over 1    # turns the camera to the right and up [°]
 //! 4.0 zoom 2               # notches
 //! ```
@@ -39,7 +39,7 @@ Script: one line for each action: the time [s], the action, its values. Empty li
   3.0 wind 5 0 1            [m/s]
   3.0 gusts 0.5
   3.0 preset silk
-  3.0 show wireframe        or hide: texture, wireframe, particles, stretch, shear, bend, pins, normals, bounds
+  3.0 show wireframe        or hide: texture, wireframe, particles, stretch, shear, bend, pins, normals, bounds, colliders
   4.0 orbit 40 5 over 1     turns the camera to the right and up [degrees]
   4.0 zoom 2                notches";
 
@@ -118,6 +118,10 @@ impl Script {
             SceneKind::Flag => FLAG,
             SceneKind::Tablecloth => TABLECLOTH,
             SceneKind::Ball => BALL,
+            SceneKind::Cape => CAPE,
+            SceneKind::Banner => BANNER,
+            SceneKind::Garment => GARMENT,
+            SceneKind::Crates => CRATES,
         };
         // A test reads all of them.
         text.parse().unwrap_or_default()
@@ -169,6 +173,35 @@ const BALL: &str = "
 4.4 release
 5.0 key P
 5.2 hold PageDown for 0.5
+";
+
+/// It runs by itself; the ball gets in its way.
+const CAPE: &str = "
+3.0 hold Right for 0.9
+";
+
+/// The wind turns, and somebody pulls at a corner.
+const BANNER: &str = "
+2.0 point cloth 0.9 0.95
+2.1 press
+2.1 move 0.2 -0.1 over 0.8
+3.2 release
+4.5 wind -3 0 1.5
+";
+
+/// The figure hurries to and fro.
+const GARMENT: &str = "
+1.5 hold Left for 0.3
+2.2 hold Right for 0.5
+3.2 hold Left for 0.3
+";
+
+/// One after the other falls; then a corner of the sheet is pulled.
+const CRATES: &str = "
+4.0 point cloth 0.5 0.98
+4.1 press
+4.1 move 0.0 0.15 over 0.6
+5.2 release
 ";
 
 impl FromStr for Script {
@@ -256,6 +289,10 @@ fn held(name: &str, seconds: &str) -> Result<Action, String> {
         "2" => KeyCode::Digit2,
         "3" => KeyCode::Digit3,
         "4" => KeyCode::Digit4,
+        "5" => KeyCode::Digit5,
+        "6" => KeyCode::Digit6,
+        "7" => KeyCode::Digit7,
+        "8" => KeyCode::Digit8,
         "Left" => KeyCode::ArrowLeft,
         "Right" => KeyCode::ArrowRight,
         "Up" => KeyCode::ArrowUp,

@@ -68,6 +68,8 @@ pub struct Look {
     pub normals: bool,
     /// The box around the cloth.
     pub bounds: bool,
+    /// The shapes of colliders.
+    pub colliders: bool,
 }
 
 impl Default for Look {
@@ -82,6 +84,7 @@ impl Default for Look {
             pins: false,
             normals: false,
             bounds: false,
+            colliders: false,
         }
     }
 }
@@ -146,7 +149,7 @@ impl DemoSettings {
 
 impl Look {
     /// All that can be shown, by name.
-    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 9] {
+    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 10] {
         [
             ("texture", &mut self.texture),
             ("wireframe", &mut self.wireframe),
@@ -157,6 +160,7 @@ impl Look {
             ("pins", &mut self.pins),
             ("normals", &mut self.normals),
             ("bounds", &mut self.bounds),
+            ("colliders", &mut self.colliders),
         ]
     }
 

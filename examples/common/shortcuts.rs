@@ -5,11 +5,15 @@ use bevy::prelude::*;
 use super::{scenes::SceneKind, settings::DemoSettings};
 
 /// The keys that show a scene.
-const SCENES: [KeyCode; 4] = [
+const SCENES: [KeyCode; 8] = [
     KeyCode::Digit1,
     KeyCode::Digit2,
     KeyCode::Digit3,
     KeyCode::Digit4,
+    KeyCode::Digit5,
+    KeyCode::Digit6,
+    KeyCode::Digit7,
+    KeyCode::Digit8,
 ];
 
 /// Does what the keys say.

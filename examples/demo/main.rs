@@ -1,4 +1,4 @@
-//! A curtain, a flag, a tablecloth and a sheet over a ball: drag them, pin them, blow at them.
+//! A curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt and crates: drag them, pin them, blow at them.
 //!
 //! `cargo run --example demo` opens a window with a panel of sliders; `--help` lists the rest. Without a display it
 //! draws pictures to ./out instead.
@@ -12,6 +12,7 @@ use bevy::prelude::*;
 use clap::Parser;
 use common::{
     apply::DemoPlugin,
+    garment,
     graphics::{check_driver, has_display},
     help,
     offscreen::{self, OffscreenOptions},
@@ -23,11 +24,11 @@ use common::{
 };
 use tailorbird::prelude::*;
 
-/// Real-time cloth: a curtain, a flag, a tablecloth and a sheet over a ball.
+/// Real-time cloth: a curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt and crates.
 #[derive(Parser)]
 #[command(after_help = after_help())]
 struct Arguments {
-    /// curtain, flag, tablecloth or ball
+    /// curtain, flag, tablecloth, ball, cape, banner, garment or crates
     #[arg(long)]
     scene: Option<SceneKind>,
     /// Particles along the longer side of the cloth
@@ -82,14 +83,18 @@ fn run(mut arguments: Arguments) -> Result<ExitCode, String> {
 /// Opens the window.
 fn play(arguments: &Arguments) -> ExitCode {
     let exit = App::new()
-        .add_plugins(DefaultPlugins.set(WindowPlugin {
-            primary_window: Some(Window {
-                title: "Tailorbird".into(),
-                resolution: (arguments.size.x, arguments.size.y).into(),
-                ..default()
-            }),
-            ..default()
-        }))
+        .add_plugins(
+            DefaultPlugins
+                .set(WindowPlugin {
+                    primary_window: Some(Window {
+                        title: "Tailorbird".into(),
+                        resolution: (arguments.size.x, arguments.size.y).into(),
+                        ..default()
+                    }),
+                    ..default()
+                })
+                .set(garment::gltf()),
+        )
         .add_plugins((
             ClothPlugins::default(),
             DemoPlugin {

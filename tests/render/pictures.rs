@@ -85,3 +85,23 @@ fn tablecloth() {
 fn ball() {
     check(SceneKind::Ball);
 }
+
+#[test]
+fn cape() {
+    check(SceneKind::Cape);
+}
+
+#[test]
+fn banner() {
+    check(SceneKind::Banner);
+}
+
+#[test]
+fn garment() {
+    check(SceneKind::Garment);
+}
+
+#[test]
+fn crates() {
+    check(SceneKind::Crates);
+}
