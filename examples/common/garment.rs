@@ -20,7 +20,9 @@ pub fn add_mipmaps(
     mut events: MessageReader<AssetEvent<Image>>,
     server: Res<AssetServer>,
     mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
+    let mut changed = false;
     for event in events.read() {
         let AssetEvent::Added { id } = *event else {
             continue;
@@ -41,11 +43,17 @@ pub fn add_mipmaps(
         };
         let (width, height) = (image.width(), image.height());
         let full = image.data.clone();
-        if let Some(full) = full.and_then(|data| RgbaImage::from_raw(width, height, data))
-            && let Err(error) = images.insert(id, with_mipmaps(&full, texels))
-        {
-            warn!("{name}: {error}");
+        let Some(full) = full.and_then(|data| RgbaImage::from_raw(width, height, data)) else {
+            continue;
+        };
+        match images.insert(id, with_mipmaps(&full, texels)) {
+            Ok(()) => changed = true,
+            Err(error) => warn!("{name}: {error}"),
         }
+    }
+    if changed {
+        // They keep what they had bound until they change themselves.
+        materials.iter_mut().for_each(drop);
     }
 }
 
