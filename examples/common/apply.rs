@@ -75,8 +75,9 @@ fn show_scene(
     if *shown == Some(wanted) {
         return;
     }
+    // Some are below others, and go with them.
     for entity in &old {
-        commands.entity(entity).despawn();
+        commands.entity(entity).try_despawn();
     }
     spawn_scene(&mut commands, &settings, &mut assets);
     if shown.is_none_or(|(scene, _)| scene != settings.scene) {

@@ -8,7 +8,7 @@
 //! 0.6 press                # the left mouse button
 //! 0.6 move 0.2 -0.1 over 1 # to the right and down, in heights of the picture, within a time [s]
 //! 1.6 wheel -2             # notches
-//! 1.8 key P                # P, R, N, Space, 1 to 4, Left, Right, Up, Down, PageUp, PageDown, Shift
+//! 1.8 key P                # P, R, N, Space, 1 to 8, Left, Right, Up, Down, PageUp, PageDown, Shift
 //! 2.0 release
 //! 2.0 hold Up for 1        # a key, for a time [s]
 //! 3.0 wind 5 0 1           # [m/s]
@@ -33,7 +33,7 @@ Script: one line for each action: the time [s], the action, its values. Empty li
   0.6 press                 the left mouse button
   0.6 move 0.2 -0.1 over 1  to the right and down, in heights of the picture, within a time [s]
   1.6 wheel -2              notches
-  1.8 key P                 P, R, N, Space, 1 to 4, Left, Right, Up, Down, PageUp, PageDown, Shift
+  1.8 key P                 P, R, N, Space, 1 to 8, Left, Right, Up, Down, PageUp, PageDown, Shift
   2.0 release
   2.0 hold Up for 1         a key, for a time [s]
   3.0 wind 5 0 1            [m/s]
