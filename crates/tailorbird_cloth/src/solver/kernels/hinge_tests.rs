@@ -56,15 +56,17 @@ proptest! {
         angle in -2.5f32..2.5, axis in point(), turn in 0.0f32..TAU, shift in point(),
     ) {
         prop_assume!(axis.length() > 0.1);
-        for angle in [angle, 0.0] {
+        for angle in [angle, 1e-4 * angle, 0.0] {
             let rest = folded(angle);
             let hinges = HingeConstraints::new(&TRIANGLES, &rest);
+            // A fold that is too slight to tell from none is made flat.
+            let tolerance = 1e-5 + if hinges.batches[0].flat { angle.abs() } else { 0.0 };
             let turn = Quat::from_axis_angle(axis.normalize(), turn);
             let moved: Points = rest.into_iter().map(|p| turn * p + shift).collect();
             let mut position = moved.clone();
             solve(&hinges, rigid(), &[1.0, 2.0, 0.5, 1.0], &mut position);
             for (p, q) in position.iter().zip(moved.iter()) {
-                prop_assert!(p.distance(q) < 1e-5, "{p} {q}");
+                prop_assert!(p.distance(q) < tolerance, "{p} {q}");
             }
         }
     }

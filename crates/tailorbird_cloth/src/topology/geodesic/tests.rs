@@ -10,6 +10,8 @@ use sheet::{Sheet, Split};
 
 const OVER: f32 = 0.02;
 const UNDER: f32 = 0.001;
+/// From here to there and back, on meshes whose triangles are up to ten times as long as wide.
+const SLIVERS: f32 = 0.08;
 
 fn flat(p: Vec2) -> Vec3 {
     p.extend(0.0)
@@ -219,12 +221,12 @@ proptest! {
         let [a, b] = ends.map(|i| i as usize);
         prop_assume!(from_a[b].is_finite());
         let ab = from_a[b];
-        prop_assert!((from_b[a] - ab).abs() <= 0.03 * ab, "{ab} there, {} back", from_b[a]);
+        prop_assert!((from_b[a] - ab).abs() <= SLIVERS * ab, "{ab} there, {} back", from_b[a]);
         for (i, &p) in positions.iter().enumerate() {
             let [to_a, to_b] = [from_a[i], from_b[i]];
             prop_assert_eq!(to_a.is_finite(), to_b.is_finite());
             prop_assert!(to_a >= p.distance(positions[a]) * 0.9999);
-            prop_assert!(!to_a.is_finite() || to_a <= (ab + to_b) * 1.03);
+            prop_assert!(!to_a.is_finite() || to_a <= (ab + to_b) * (1.0 + SLIVERS));
         }
         for &[i, j, k] in &sheet.triangles {
             for (i, j) in [(i, j), (j, k), (k, i)] {
