@@ -95,7 +95,7 @@ impl PushedBodyItem<'_, '_> {
                 angular: threshold.angular,
                 seconds: memory,
             };
-            let mass = (inv_mass.max_element(), inv_inertia);
+            let mass = (inv_mass, inv_inertia);
             if let Some((linear, angular)) = self.load.disturb(reaction, mass, seconds, limits) {
                 self.linear.0 += linear;
                 self.angular.0 += angular;
@@ -109,11 +109,9 @@ impl PushedBodyItem<'_, '_> {
         };
         self.linear.0 += inv_mass * reaction.impulse;
         self.angular.0 += inv_inertia * reaction.angular_impulse;
-        let mut way = *reaction;
-        way.translation = Vec3::select(inv_mass.cmpgt(Vec3::ZERO), way.translation, Vec3::ZERO);
         let at = (self.position.0, self.rotation.0);
         let center = at.0 + at.1 * self.center.0;
-        let (position, rotation) = moved(&way, at, center);
+        let (position, rotation) = moved(reaction, at, center);
         self.position.0 = position;
         self.rotation.0 = rotation;
     }

@@ -105,7 +105,7 @@ impl BodyItem<'_, '_> {
         let center_of_mass = self.position.0 + self.rotation.0 * self.center.0;
         let still = ColliderBody {
             body,
-            inv_mass: 0.0,
+            inv_mass: Vec3::ZERO,
             inv_inertia: Mat3::ZERO,
             center_of_mass,
             linear_velocity: Vec3::ZERO,
@@ -117,7 +117,7 @@ impl BodyItem<'_, '_> {
         let (inv_mass, inv_inertia) =
             inverse_mass(self.mass, self.inertia, self.rotation, self.locked);
         Some(ColliderBody {
-            inv_mass: inv_mass.max_element(),
+            inv_mass,
             inv_inertia,
             linear_velocity: self.linear.0,
             angular_velocity: self.angular.0,

@@ -31,8 +31,8 @@ pub struct SleepLimits {
     pub seconds: f32,
 }
 
-/// What a body that sleeps would do if it were awake: 1/mass [1/kg], and the inverse inertia in world axes [1/(kg m²)].
-pub type InverseMass = (f32, Mat3);
+/// What a body that sleeps would do if it were awake: 1/mass along the axes of the world [1/kg], and the inverse inertia in world axes [1/(kg m²)].
+pub type InverseMass = (Vec3, Mat3);
 
 impl ClothLoad {
     /// The mean force \[N\] and torque about the centre of mass \[N m\] of the last while in which the body was awake.

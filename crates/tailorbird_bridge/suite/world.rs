@@ -79,6 +79,8 @@ pub struct Body {
     pub falls: bool,
     /// Rate at which its motion decays [1/s].
     pub damping: f32,
+    /// Whether it moves up and down alone, and does not turn.
+    pub on_rail: bool,
 }
 
 impl Body {
@@ -94,6 +96,7 @@ impl Body {
             sleeps: false,
             falls: true,
             damping: 0.0,
+            on_rail: false,
         }
     }
 

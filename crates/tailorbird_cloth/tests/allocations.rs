@@ -251,7 +251,7 @@ fn among_colliders(substeps: u32) -> Sheet {
                     end: at(time),
                     body: Some(ColliderBody {
                         body: *body,
-                        inv_mass: 2.0,
+                        inv_mass: Vec3::splat(2.0),
                         inv_inertia: Mat3::IDENTITY * 100.0,
                         center_of_mass: at(time).translation.into(),
                         linear_velocity: Vec3::ZERO,

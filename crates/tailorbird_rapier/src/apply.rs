@@ -114,7 +114,7 @@ fn answer(
         seconds: activation.time_until_sleep,
     };
     if body.is_sleeping() {
-        let mass = (inv_mass.max_element(), inv_inertia);
+        let mass = (inv_mass, inv_inertia);
         let (linear, angular) = load.disturb(reaction, mass, seconds, limits)?;
         return Some(Change {
             linear_velocity: body.linvel() + linear,
@@ -125,15 +125,14 @@ fn answer(
     }
     load.carry(reaction, seconds, limits.seconds);
     let reaction = reaction?;
-    let free = inv_mass.cmpgt(Vec3::ZERO);
-    let way = ClothReaction {
-        translation: Vec3::select(free, reaction.translation, Vec3::ZERO),
-        ..*reaction
-    };
     let at = body.position();
-    let (translation, rotation) = moved(&way, (at.translation, at.rotation), body.center_of_mass());
-    let still = way.translation.length() <= STILL * limits.linear.max(0.0) * seconds
-        && way.rotation.length() <= STILL * limits.angular.max(0.0) * seconds;
+    let (translation, rotation) = moved(
+        reaction,
+        (at.translation, at.rotation),
+        body.center_of_mass(),
+    );
+    let still = reaction.translation.length() <= STILL * limits.linear.max(0.0) * seconds
+        && reaction.rotation.length() <= STILL * limits.angular.max(0.0) * seconds;
     Some(Change {
         linear_velocity: body.linvel() + inv_mass * reaction.impulse,
         angular_velocity: body.angvel() + inv_inertia * reaction.angular_impulse,

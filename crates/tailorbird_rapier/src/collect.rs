@@ -48,7 +48,7 @@ fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
     }
     let still = ColliderBody {
         body: entity,
-        inv_mass: 0.0,
+        inv_mass: Vec3::ZERO,
         inv_inertia: Mat3::ZERO,
         center_of_mass: body.center_of_mass(),
         linear_velocity: Vec3::ZERO,
@@ -59,7 +59,7 @@ fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
     }
     let (inv_mass, inv_inertia) = inverse_mass(body);
     Some(ColliderBody {
-        inv_mass: inv_mass.max_element(),
+        inv_mass,
         inv_inertia,
         linear_velocity: body.linvel(),
         angular_velocity: body.angvel(),

@@ -72,6 +72,10 @@ pub fn spawn(world: &mut World, body: &Body) -> Entity {
     if !body.sleeps {
         entity.insert(SleepingDisabled);
     }
+    if body.on_rail {
+        let rail = LockedAxes::ROTATION_LOCKED.lock_translation_x();
+        entity.insert(rail.lock_translation_z());
+    }
     match body.contact {
         Contact::Yes => {}
         Contact::Sensor => {

@@ -11,6 +11,8 @@ mod engine;
 mod filters;
 #[path = "../../../tailorbird_bridge/suite/momentum.rs"]
 mod momentum;
+#[path = "../../../tailorbird_bridge/suite/rail.rs"]
+mod rail;
 #[path = "../../../tailorbird_bridge/suite/shapes.rs"]
 mod shapes;
 #[path = "../../../tailorbird_bridge/suite/terrain.rs"]

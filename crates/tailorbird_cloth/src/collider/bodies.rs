@@ -207,7 +207,7 @@ impl Struck<'_> {
 
     fn inv_mass(&self, arm: Vec3, along: Vec3) -> f32 {
         let lever = arm.cross(along);
-        (self.body.inv_mass + lever.dot(self.body.inv_inertia * lever)).max(0.0)
+        (along.dot(self.body.inv_mass * along) + lever.dot(self.body.inv_inertia * lever)).max(0.0)
     }
 
     /// Lets particle `i` of inverse mass `w` strike the body: pushes both apart and, where `pressed` says by how much the two were

@@ -58,8 +58,8 @@ pub struct ExternalCollider {
 pub struct ColliderBody {
     /// Which body: [`ClothReactions`](super::ClothReactions) names it.
     pub body: Entity,
-    /// 1/mass [1/kg]; 0 is too heavy to move.
-    pub inv_mass: f32,
+    /// 1/mass along the axes of the world [1/kg]; 0 where it cannot move.
+    pub inv_mass: Vec3,
     /// Inverse of the inertia about the centre of mass, in world axes [1/(kg m²)]; 0 does not turn.
     pub inv_inertia: Mat3,
     /// In the world, at the end of the step \[m\].

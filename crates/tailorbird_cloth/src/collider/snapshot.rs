@@ -310,8 +310,9 @@ fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
         allowed: allowed.into(),
     };
     let mass = body.inv_mass;
-    let mass = (!(mass >= 0.0 && mass.is_finite()))
-        .then(|| error("inv_mass", mass.to_string(), "at least 0 and finite [1/kg]"));
+    let right = mass.is_finite() && mass.min_element() >= 0.0;
+    let mass =
+        (!right).then(|| error("inv_mass", mass.to_string(), "at least 0 and finite [1/kg]"));
     let inertia = body.inv_inertia;
     let [x, y, z] = [inertia.x_axis.x, inertia.y_axis.y, inertia.z_axis.z];
     let right = inertia.is_finite() && x >= 0.0 && y >= 0.0 && z >= 0.0;

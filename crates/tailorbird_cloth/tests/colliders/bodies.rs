@@ -56,7 +56,7 @@ impl Body {
                 end,
                 body: Some(ColliderBody {
                     body: self.entity,
-                    inv_mass: 1.0 / self.mass,
+                    inv_mass: Vec3::splat(1.0 / self.mass),
                     inv_inertia: Mat3::from_diagonal(Vec3::splat(1.0 / self.inertia)),
                     center_of_mass: center,
                     linear_velocity: self.velocity,

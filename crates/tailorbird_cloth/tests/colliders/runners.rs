@@ -51,7 +51,7 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
                 end: at,
                 body: Some(ColliderBody {
                     body: entity,
-                    inv_mass: 10.0,
+                    inv_mass: Vec3::splat(10.0),
                     inv_inertia: Mat3::IDENTITY * 1000.0,
                     center_of_mass: at.translation.into(),
                     linear_velocity: Vec3::ZERO,

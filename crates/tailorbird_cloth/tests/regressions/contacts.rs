@@ -155,7 +155,7 @@ fn push_ball(
         end: Isometry3d::from_translation(end),
         body: Some(ColliderBody {
             body: entity,
-            inv_mass,
+            inv_mass: Vec3::splat(inv_mass),
             inv_inertia: Mat3::IDENTITY * inv_inertia,
             center_of_mass: end,
             linear_velocity: (end - start) * 60.0,

@@ -92,6 +92,10 @@ pub fn spawn(world: &mut World, body: &Body) -> Entity {
     if !body.sleeps {
         entity.insert(Sleeping::disabled());
     }
+    if body.on_rail {
+        let rail = LockedAxes::TRANSLATION_LOCKED_X | LockedAxes::TRANSLATION_LOCKED_Z;
+        entity.insert(rail | LockedAxes::ROTATION_LOCKED);
+    }
     match body.contact {
         Contact::Yes => {}
         Contact::Sensor => {
