@@ -17,6 +17,10 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4096))]
     pub size: Option<u32>,
 
+    /// Colliders with these words in their names alone; of no meaning for others.
+    #[arg(long, value_name = "NAME")]
+    pub shape: Option<String>,
+
     /// Steps of each measurement [default: 300, of flags 60].
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,

@@ -57,7 +57,8 @@ pub fn run(args: &Args) -> Vec<Record> {
     let mut records = Vec::new();
     println!("{size}²: ns per particle and substep, of colliders and of all else");
     let (nothing, _) = measure(size, steps, &[]);
-    for (shape, size, colliders) in shapes(size) {
+    let meant = |name: &str| args.shape.as_ref().is_none_or(|part| name.contains(part));
+    for (shape, size, colliders) in shapes(size).into_iter().filter(|s| meant(s.0)) {
         let none = if size == 64 {
             measure(size, steps, &[]).0
         } else {

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, fmt, sync::Arc};
 use bevy_math::{Isometry3d, Mat3, Vec2, Vec3, Vec4};
 
 use super::{ColliderShape, ConvexHull, HeightField, TriMesh, surface::Surface};
+use crate::solver::kernels::planes::PlaneList;
 
 /// A shape at the scale of its entity.
 #[derive(Clone)]
@@ -38,7 +39,7 @@ pub(crate) enum Kind {
 /// A convex hull at the scale of its entity.
 #[derive(Debug)]
 pub(crate) struct Hull {
-    pub planes: Vec<Vec4>,
+    pub planes: PlaneList,
     pub size: f32,
     range: (Vec3, Vec3),
 }
@@ -161,8 +162,8 @@ impl Hull {
         let size = inside.fold(f32::MAX, f32::min);
         let low = points.iter().copied().reduce(Vec3::min)?;
         let high = points.iter().copied().reduce(Vec3::max)?;
-        (planes.len() > 3 && size > 0.0).then_some(Self {
-            planes,
+        (planes.len() > 3 && size > 0.0).then(|| Self {
+            planes: PlaneList::new(&planes),
             size,
             range: (low, high),
         })

@@ -57,6 +57,8 @@ impl Capsule {
 }
 
 impl Solid for Capsule {
+    const COMMON: bool = true;
+
     #[inline(always)]
     fn size(&self) -> f32 {
         self.radius.min(self.radius - self.shrinks * self.length)

@@ -23,6 +23,8 @@ pub(super) fn away<S: Simd>(simd: S, x: S::f32s) -> (S::f32s, S::f32s) {
 }
 
 impl Solid for Cuboid {
+    const COMMON: bool = true;
+
     #[inline(always)]
     fn size(&self) -> f32 {
         self.half_size.min_element()
@@ -32,10 +34,7 @@ impl Solid for Cuboid {
     #[inline(always)]
     fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
         let zero = S::f32s::splat(simd, 0.0);
-        let [(x, right), (y, up), (z, front)] = [p.x, p.y, p.z].map(
-            #[inline(always)]
-            |x| away(simd, x),
-        );
+        let ((x, right), (y, up), (z, front)) = (away(simd, p.x), away(simd, p.y), away(simd, p.z));
         let x = x - self.half_size.x;
         let y = y - self.half_size.y;
         let z = z - self.half_size.z;

@@ -63,6 +63,7 @@ pub(crate) struct Seen<'a> {
 
 impl Solid for Seen<'_> {
     const CONVEX: bool = false;
+    const COMMON: bool = true;
 
     #[inline(always)]
     fn size(&self) -> f32 {

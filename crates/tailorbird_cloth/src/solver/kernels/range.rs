@@ -53,36 +53,44 @@ fn bounds_with<S: Simd>(
 /// The lowest and the highest of some numbers of two lists.
 #[inline(always)]
 fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
-    let (mut low, mut high) = ([f32::INFINITY; WIDEST], [f32::NEG_INFINITY; WIDEST]);
-    let (mut lowest, mut highest) = (
-        S::f32s::splat(simd, f32::INFINITY),
-        S::f32s::splat(simd, f32::NEG_INFINITY),
-    );
-    for values in lists {
-        let chunks = values[at.clone()].chunks_exact(S::f32s::LEN);
-        for (k, value) in chunks.remainder().iter().enumerate() {
-            (low[k], high[k]) = (low[k].min(*value), high[k].max(*value));
-        }
-        for chunk in chunks {
-            let values = S::f32s::from_slice(simd, chunk);
+    let lanes = S::f32s::LEN;
+    let [a, b] = [&lists[0][at.clone()], &lists[1][at]];
+    if a.len() < lanes {
+        let all = a.iter().chain(b);
+        return all.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        });
+    }
+    let mut lowest = S::f32s::splat(simd, f32::INFINITY);
+    let mut highest = S::f32s::splat(simd, f32::NEG_INFINITY);
+    for values in [a, b] {
+        // The last vector overlaps the one before.
+        let last = &values[values.len() - lanes..];
+        for values in values.chunks_exact(lanes).chain(std::iter::once(last)) {
+            let values = S::f32s::from_slice(simd, values);
             lowest = lowest.min(values);
             highest = highest.max(values);
         }
     }
-    for k in 0..S::f32s::LEN {
-        low[k] = low[k].min(lowest.as_slice()[k]);
-        high[k] = high[k].max(highest.as_slice()[k]);
-    }
+    let (mut low, mut high) = ([f32::INFINITY; WIDEST], [f32::NEG_INFINITY; WIDEST]);
+    low[..lanes].copy_from_slice(lowest.as_slice());
+    high[..lanes].copy_from_slice(highest.as_slice());
     // By halves: one after the other would take as long as all the rest.
-    let mut half = WIDEST / 2;
-    while half > 0 {
-        for k in 0..half {
-            low[k] = low[k].min(low[k + half]);
-            high[k] = high[k].max(high[k + half]);
-        }
-        half /= 2;
-    }
+    halve::<8>(&mut low, &mut high);
+    halve::<4>(&mut low, &mut high);
+    halve::<2>(&mut low, &mut high);
+    halve::<1>(&mut low, &mut high);
     (low[0], high[0])
+}
+
+/// Leaves the lowest and the highest of two halves in the first one.
+#[inline(always)]
+fn halve<const HALF: usize>(low: &mut [f32; WIDEST], high: &mut [f32; WIDEST]) {
+    for k in 0..HALF {
+        let (a, b) = (low[k + HALF], high[k + HALF]);
+        low[k] = if a < low[k] { a } else { low[k] };
+        high[k] = if b > high[k] { b } else { high[k] };
+    }
 }
 
 /// Whether none of these numbers is infinite or NaN: 0 · v is 0 for finite ones alone.

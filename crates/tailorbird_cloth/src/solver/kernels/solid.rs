@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use bevy_math::{Mat3, Vec3};
-use fearless_simd::{Fallback, Level, Simd, prelude::*};
+use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
     contact::{Touching, unit_or_up},
@@ -49,6 +49,9 @@ pub(crate) struct Near<S: Simd> {
 pub(crate) trait Solid: Copy + Sync {
     /// Whether it is convex, so that long paths can be followed.
     const CONVEX: bool = true;
+
+    /// Whether there are many of it in games, so that the widest vectors are worth the time to compile code for them.
+    const COMMON: bool = false;
 
     /// How far a particle can go in it before it comes nearer to the other side \[m\].
     fn size(&self) -> f32;
@@ -108,7 +111,7 @@ fn meet<S: Simd, Q: Solid>(
 
 /// One of several vectors side by side.
 #[inline(always)]
-fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
+pub(super) fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
     Vec3::new(v.x.as_slice()[k], v.y.as_slice()[k], v.z.as_slice()[k])
 }
 
@@ -160,6 +163,9 @@ pub(crate) fn collide_all<Q: Solid>(
     range: Range<usize>,
 ) -> bool {
     particles.check(&range);
+    if Q::COMMON {
+        return dispatch!(level, simd => collide_all_with(simd, solid, motion, particles, range));
+    }
     // Two instruction sets: there are many solids, and each takes long to compile.
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     let level = level.as_avx2().map_or(Level::fallback(), Level::Avx2);

@@ -23,47 +23,12 @@ pub(crate) struct Terrain<'a> {
     pub margin: f32,
 }
 
-/// The plane of a triangle, at a point.
-#[derive(Clone, Copy)]
-struct Slope {
-    height: f32,
-    along_x: f32,
-    along_z: f32,
-}
-
 impl Terrain<'_> {
-    /// The surface at x and z; deep below everything where there is none.
-    fn at(&self, x: f32, z: f32) -> Slope {
-        let last = self.resolution - UVec2::ONE;
-        let at = Vec2::new(x, z) / self.cell + 0.5 * last.as_vec2();
-        if !(at.min_element() >= 0.0 && at.cmple(last.as_vec2()).all()) {
-            return Slope {
-                height: f32::MIN,
-                along_x: 0.0,
-                along_z: 0.0,
-            };
-        }
-        let corner = at.as_uvec2().min(last - UVec2::ONE);
-        let part = at - corner.as_vec2();
-        let height = |right: u32, back: u32| {
-            let i = (corner.y + back) * self.resolution.x + corner.x + right;
-            self.heights.get(i as usize).copied().unwrap_or(0.0) * self.stretch
-        };
-        let (right, back) = (height(1, 0), height(0, 1));
-        let near = part.x + part.y <= 1.0;
-        let third = if near { height(0, 0) } else { height(1, 1) };
-        // From the corner that the triangle has to itself.
-        let (along_x, along_z) = if near {
-            (right - third, back - third)
-        } else {
-            (third - back, third - right)
-        };
-        let from = if near { part } else { part - Vec2::ONE };
-        Slope {
-            height: third + along_x * from.x + along_z * from.y,
-            along_x: along_x / self.cell.x,
-            along_z: along_z / self.cell.y,
-        }
+    /// The height of a corner \[m\].
+    #[inline(always)]
+    fn height(&self, column: usize, row: usize) -> f32 {
+        let i = row * self.resolution.x as usize + column;
+        self.heights.get(i).copied().unwrap_or(0.0) * self.stretch
     }
 }
 
@@ -78,20 +43,38 @@ impl Solid for Terrain<'_> {
     /// The distance from the plane of the triangle above or below.
     #[inline(always)]
     fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
-        let mut lanes = [[0.0; WIDEST]; 3];
-        let points = p.x.as_slice().iter().zip(p.z.as_slice());
-        for (k, (x, z)) in points.enumerate() {
-            let slope = self.at(*x, *z);
-            lanes[0][k] = slope.height;
-            lanes[1][k] = slope.along_x;
-            lanes[2][k] = slope.along_z;
-        }
-        let [height, a, b] = lanes.map(
-            #[inline(always)]
-            |lanes| S::f32s::from_slice(simd, &lanes[..S::f32s::LEN]),
-        );
         let one = S::f32s::splat(simd, 1.0);
         let zero = S::f32s::splat(simd, 0.0);
+        let last = (self.resolution - UVec2::ONE).as_vec2();
+        let x = p.x * self.cell.x.recip() + 0.5 * last.x;
+        let z = p.z * self.cell.y.recip() + 0.5 * last.y;
+        let inside = x.simd_ge(zero)
+            & z.simd_ge(zero)
+            & x.simd_le(S::f32s::splat(simd, last.x))
+            & z.simd_le(S::f32s::splat(simd, last.y));
+        let column = x.max(zero).min(S::f32s::splat(simd, last.x - 1.0)).floor();
+        let row = z.max(zero).min(S::f32s::splat(simd, last.y - 1.0)).floor();
+        let (x, z) = (x - column, z - row);
+        // Whether the triangle has the corner at the lowest x and z, or the one at the highest, to itself.
+        let low = (x + z).simd_le(one);
+        let own = low.select(zero, one);
+        let mut heights = [[0.0; WIDEST]; 3];
+        for (k, own) in own.as_slice().iter().enumerate() {
+            let (column, row) = (column.as_slice()[k] as usize, row.as_slice()[k] as usize);
+            let own = *own as usize;
+            heights[0][k] = self.height(column + own, row + own);
+            heights[1][k] = self.height(column + 1, row);
+            heights[2][k] = self.height(column, row + 1);
+        }
+        let own = S::f32s::from_slice(simd, &heights[0][..S::f32s::LEN]);
+        let right = S::f32s::from_slice(simd, &heights[1][..S::f32s::LEN]);
+        let back = S::f32s::from_slice(simd, &heights[2][..S::f32s::LEN]);
+        let a = low.select(right - own, own - back);
+        let b = low.select(back - own, own - right);
+        let height = own + a * low.select(x, x - one) + b * low.select(z, z - one);
+        let height = inside.select(height, S::f32s::splat(simd, f32::MIN));
+        let a = inside.select(a, zero) * self.cell.x.recip();
+        let b = inside.select(b, zero) * self.cell.y.recip();
         let length = (a * a + b * b + one).sqrt();
         Near {
             distance: (p.y - height) / length - self.margin,
