@@ -10,3 +10,4 @@ mod common;
 mod depth_picking;
 mod offscreen;
 mod pictures;
+mod writes;

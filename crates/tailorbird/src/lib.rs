@@ -62,7 +62,8 @@ pub mod prelude {
             ClothReleased, ClothUnpinned,
         },
         mesh::{
-            ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ColorChannel, MeshParts, MeshPins,
+            ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
+            ClothUnseen, ColorChannel, MeshParts, MeshPins,
         },
         picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
         plugins::ClothPlugins,

@@ -58,7 +58,12 @@ impl PluginGroup for ClothPlugins {
         let interpolate = self.is_fixed();
         PluginGroupBuilder::start::<Self>()
             .add(ClothPlugin::new(self.schedule))
-            .add(ClothMeshPlugin { interpolate })
+            .add(ClothMeshPlugin {
+                settings: ClothMeshSettings {
+                    interpolate,
+                    ..ClothMeshSettings::default()
+                },
+            })
             .add(ClothPickingPlugin)
             .add(ClothDragPlugin)
             .add(SphereControlsPlugin)

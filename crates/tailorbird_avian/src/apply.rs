@@ -6,7 +6,6 @@ use avian3d::{
     prelude::*,
 };
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bevy_time::Time;
 use tailorbird_bridge::{ClothLoad, SleepLimits, TrackedPose, moved};
 use tailorbird_cloth::{collider::ClothReaction, prelude::*};

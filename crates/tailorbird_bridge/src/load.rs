@@ -108,7 +108,7 @@ mod tests {
         }
         (0..640).find(|step| {
             let push = force(*step).map(push);
-            let body = (1.0, Mat3::IDENTITY);
+            let body = (Vec3::ONE, Mat3::IDENTITY);
             load.disturb(push.as_ref(), body, STEP, LIMITS).is_some()
         })
     }

@@ -95,6 +95,11 @@ impl ClothDrawnHolds {
         }
     }
 
+    /// The offsets of all particles in storage order; none where all are drawn where they are.
+    pub(crate) fn offsets(&self) -> Option<&Points> {
+        (!self.is_still()).then_some(&self.offsets)
+    }
+
     /// Whether all particles are drawn where they are.
     pub fn is_still(&self) -> bool {
         self.offsets.is_empty()

@@ -56,6 +56,7 @@ pub mod step;
 pub mod tethers;
 pub mod topology;
 pub mod validate;
+pub mod vertices;
 pub mod weights;
 pub mod wind;
 

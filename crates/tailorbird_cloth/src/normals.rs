@@ -67,6 +67,11 @@ impl ClothNormals {
         self.current.get(i)
     }
 
+    /// The normals after the step before, and after the last one.
+    pub(crate) fn ends(&self) -> [&Points; 2] {
+        [&self.previous, &self.current]
+    }
+
     /// A normal between the last two steps: `fraction` 0 is the one before, 1 the last one. Of unit length.
     ///
     /// # Panics

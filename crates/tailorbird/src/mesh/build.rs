@@ -3,7 +3,7 @@
 use bevy_asset::{AssetId, Assets, Handle};
 use bevy_camera::visibility::NoAutoAabb;
 use bevy_ecs::prelude::*;
-use bevy_math::{Affine3A, Vec3};
+use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
@@ -11,7 +11,8 @@ use tailorbird_cloth::{
 };
 
 use super::{
-    from_mesh::ClothMeshSource, parts::MeshSource, tangents::Tangents, vertices::Vertices,
+    follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
+    vertices::Vertices,
 };
 
 /// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
@@ -22,8 +23,6 @@ pub struct ClothMesh {
     pub(super) revision: u64,
     pub(super) shading: ClothShading,
     pub(super) parts: Vec<ClothMeshPart>,
-    /// What was written last: steps, part of the step, scale.
-    pub(super) written: Option<(u64, f32, Vec3)>,
 }
 
 impl ClothMesh {
@@ -37,19 +36,36 @@ impl ClothMesh {
 pub struct ClothMeshPart {
     pub(super) entity: Entity,
     pub(super) handle: Handle<Mesh>,
-    /// For each vertex its particle.
-    pub(super) particle_of_vertex: Vec<u32>,
-    /// For each vertex its normal: of a particle when smooth, of a triangle when flat.
-    pub(super) normal_of_vertex: Vec<u32>,
-    /// The vertices on the backs of double-sided faces, whose normals point the other way.
-    pub(super) backs: Vec<u32>,
-    /// Absent where the mesh has no UVs.
-    pub(super) tangents: Option<Tangents>,
-    /// From the cloth's space to that of the entity with the mesh; absent where they are one.
-    pub(super) from_cloth: Option<Affine3A>,
+    pub(super) follow: Follow,
+    /// Its vertices; absent before they are known, and where the mesh has no place for them.
+    pub(super) packed: Option<Packed>,
+    /// What the vertices show: steps, part of the step, scale.
+    pub(super) shows: Option<(u64, f32, Vec3)>,
+    /// Whether the vertices changed since they were written.
+    pub(super) fresh: bool,
+    /// Whether the asset has been written since the mesh was built.
+    pub(super) in_asset: bool,
+    /// Whether the last change of the asset was ours.
+    pub(super) own_change: bool,
+    /// Whether others have changed the asset.
+    pub(super) outdated: bool,
 }
 
 impl ClothMeshPart {
+    pub(super) fn new(follow: Follow) -> Self {
+        Self {
+            entity: Entity::PLACEHOLDER,
+            handle: Handle::default(),
+            follow,
+            packed: None,
+            shows: None,
+            fresh: false,
+            in_asset: false,
+            own_change: false,
+            outdated: false,
+        }
+    }
+
     /// The entity that has the mesh: the cloth itself or one below it.
     pub fn entity(&self) -> Entity {
         self.entity
@@ -57,7 +73,7 @@ impl ClothMeshPart {
 
     /// For each vertex of the mesh the particle that moves it.
     pub fn particle_of_vertex(&self) -> &[u32] {
-        &self.particle_of_vertex
+        &self.follow.particle_of_vertex
     }
 }
 
@@ -121,14 +137,17 @@ pub(super) fn build_cloth_mesh(
         for (vertices, source) in all {
             let (mesh, mut part) = vertices.into_mesh(topology, *shading);
             part.entity = source.map_or(entity, |source| source.entity);
-            part.from_cloth = source.and_then(|source| Some(source.to_cloth?.inverse()));
+            part.follow.from_cloth = source.and_then(|source| Some(source.to_cloth?.inverse()));
             let before = built.and_then(|built| {
                 let mut before = built.parts.iter();
                 before.find(|before| before.entity == part.entity)
             });
             // The same asset where there is one, so that whoever holds its handle keeps it.
             part.handle = match before.map(|before| before.handle.clone()) {
-                Some(handle) if meshes.insert(&handle, mesh.clone()).is_ok() => handle,
+                Some(handle) if meshes.insert(&handle, mesh.clone()).is_ok() => {
+                    part.own_change = true;
+                    handle
+                }
                 _ => meshes.add(mesh),
             };
             if let Ok(mut shown) = commands.get_entity(part.entity) {
@@ -146,7 +165,6 @@ pub(super) fn build_cloth_mesh(
             revision: topology.revision,
             shading: *shading,
             parts,
-            written: None,
         });
     }
 }

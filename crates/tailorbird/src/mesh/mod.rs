@@ -1,10 +1,13 @@
 //! From particles to the picture: builds a mesh for each cloth and writes it once per frame.
 
 mod build;
+mod follow;
 mod from_mesh;
 pub mod garments;
+mod packed;
 mod parts;
 mod pins;
+mod slab;
 mod tangents;
 mod vertices;
 mod write;
@@ -18,49 +21,82 @@ use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};
 use bevy_camera::visibility::VisibilitySystems;
 use bevy_ecs::prelude::*;
+use bevy_light::SimulationLightSystems;
 use bevy_mesh::Mesh;
 use bevy_pbr::StandardMaterial;
+use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
+
+/// What happens to meshes of cloths that no camera and no light with shadows sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum ClothUnseen {
+    /// They are not written until they are seen again, and then in that frame. Meshes that are written as assets are written all the same.
+    #[default]
+    Skip,
+    /// They are written, for those who draw what Bevy does not see: by ray tracing, say.
+    Write,
+}
 
 /// Builds a mesh for each cloth (positions, normals, UVs, tangents), and writes it once per frame, in `PostUpdate`.
 ///
 /// Makes the `StandardMaterial` of cloths two-sided as well: a cloth has a back.
+#[derive(Default)]
 pub struct ClothMeshPlugin {
+    /// What [`ClothMeshSettings`] starts with.
+    pub settings: ClothMeshSettings,
+}
+
+/// How meshes are written.
+#[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Resource, Default)]
+pub struct ClothMeshSettings {
     /// Draws cloth between the last two steps, where the current frame is. For a simulation in a schedule with a fixed
     /// time step; without it motion would stutter wherever steps and frames do not coincide.
     pub interpolate: bool,
+    /// Where the vertices go.
+    pub write: ClothMeshWrite,
+    /// What happens to meshes that no camera and no light with shadows sees.
+    pub unseen: ClothUnseen,
 }
 
-impl Default for ClothMeshPlugin {
+impl Default for ClothMeshSettings {
     fn default() -> Self {
-        Self { interpolate: true }
+        Self {
+            interpolate: true,
+            write: ClothMeshWrite::default(),
+            unseen: ClothUnseen::default(),
+        }
     }
+}
+
+/// Where the vertices of cloths go in each frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum ClothMeshWrite {
+    /// To where the renderer keeps them. The mesh asset has the cloth as it was when its mesh was built.
+    ///
+    /// Where there is no renderer, or it keeps a mesh in another form, the asset is written.
+    #[default]
+    Slab,
+    /// To the mesh asset, for those who read it. It costs several times as much.
+    Asset,
 }
 
 /// The systems that build and write meshes, in `PostUpdate`.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClothMeshSystems;
 
-/// How meshes are written.
-#[derive(Resource)]
-struct ClothMeshSettings {
-    interpolate: bool,
-}
-
 impl Plugin for ClothMeshPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothFromMesh>()
-            .insert_resource(ClothMeshSettings {
-                interpolate: self.interpolate,
-            })
+            .register_type::<ClothMeshSettings>()
+            .insert_resource(self.settings.clone())
             .configure_sets(
                 PostUpdate,
                 ClothMeshSystems
                     // What holds cloth is where it is drawn.
                     .after(TransformSystems::Propagate)
-                    .before(AssetEventSystems)
-                    .before(VisibilitySystems::CheckVisibility)
-                    .before(VisibilitySystems::CalculateBounds)
                     .run_if(resource_exists::<Assets<Mesh>>),
             )
             .add_systems(
@@ -70,13 +106,33 @@ impl Plugin for ClothMeshPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    build::build_cloth_mesh,
-                    write::write_cloth_mesh,
-                    build::make_materials_two_sided
-                        .run_if(resource_exists::<Assets<StandardMaterial>>),
+                    (
+                        build::build_cloth_mesh,
+                        write::watch_meshes,
+                        write::bound_cloth_meshes,
+                        build::make_materials_two_sided
+                            .run_if(resource_exists::<Assets<StandardMaterial>>),
+                        (write::follow_cloth, write::write_cloth_mesh)
+                            .chain()
+                            .run_if(write::writes_assets),
+                    )
+                        .chain()
+                        .before(AssetEventSystems)
+                        .before(VisibilitySystems::CheckVisibility)
+                        .before(VisibilitySystems::CalculateBounds),
+                    // What is seen is known by now.
+                    (write::follow_cloth, write::write_cloth_mesh)
+                        .chain()
+                        .after(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible)
+                        .after(SimulationLightSystems::CheckLightVisibility)
+                        .run_if(not(write::writes_assets)),
                 )
                     .chain()
                     .in_set(ClothMeshSystems),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        slab::finish(app);
     }
 }

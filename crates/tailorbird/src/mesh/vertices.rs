@@ -1,12 +1,11 @@
 //! The vertices of a cloth's mesh in the making.
 
-use bevy_asset::{Assets, Handle, RenderAssetUsages};
-use bevy_ecs::prelude::*;
+use bevy_asset::{Assets, RenderAssetUsages};
 use bevy_math::{UVec2, Vec2};
 use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
 use tailorbird_cloth::{cloth::ClothShape, normals::ClothShading, topology::Topology};
 
-use super::{build::ClothMeshPart, parts::MeshSource, tangents::Tangents};
+use super::{build::ClothMeshPart, follow::Follow, parts::MeshSource, tangents::Tangents};
 
 /// The vertices of a mesh in the making, in the order of its source.
 pub(super) struct Vertices {
@@ -229,15 +228,13 @@ impl Vertices {
             tangents
         });
         mesh.insert_indices(Indices::U32(self.indices));
-        let part = ClothMeshPart {
-            entity: Entity::PLACEHOLDER,
-            handle: Handle::default(),
+        let follow = Follow::new(
             particle_of_vertex,
-            normal_of_vertex: self.normal_of_vertex,
-            backs: self.backs,
+            self.normal_of_vertex,
+            self.backs,
             tangents,
-            from_cloth: None,
-        };
-        (mesh, part)
+            topology.grid.map(|grid| grid.x as usize),
+        );
+        (mesh, ClothMeshPart::new(follow))
     }
 }

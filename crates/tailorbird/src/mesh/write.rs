@@ -1,10 +1,12 @@
 //! Writes the meshes of cloths, once per frame.
 
-use bevy_asset::Assets;
-use bevy_camera::primitives::Aabb;
+use std::collections::HashSet;
+
+use bevy_asset::{AssetEvent, AssetId, Assets};
+use bevy_camera::{primitives::Aabb, visibility::ViewVisibility};
 use bevy_ecs::prelude::*;
-use bevy_math::{Affine3A, Mat3, Vec3};
-use bevy_mesh::{Mesh, VertexAttributeValues};
+use bevy_math::Affine3A;
+use bevy_mesh::Mesh;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
@@ -12,17 +14,62 @@ use tailorbird_cloth::{
     normals::ClothNormals, particles::ClothParticles, sleep::ClothRest, step::ClothStep,
     topology::ClothTopology,
 };
+use tracing::warn;
 
-use super::{ClothMesh, ClothMeshPart, ClothMeshSettings};
+use super::{
+    ClothMesh, ClothMeshPart, ClothMeshSettings, ClothMeshWrite, ClothUnseen,
+    follow::{Drawn, PIECE, share},
+    packed::Packed,
+    slab::{VertexUploads, Vertices},
+};
 
-/// Writes positions, normals and tangents between the last two steps, and the box around them.
+/// Whether meshes are written as assets: then they are before their changes are told.
+pub(super) fn writes_assets(
+    settings: Res<ClothMeshSettings>,
+    uploads: Option<Res<VertexUploads>>,
+) -> bool {
+    settings.write == ClothMeshWrite::Asset || uploads.is_none()
+}
+
+/// Sets the boxes around meshes.
+pub(super) fn bound_cloth_meshes(
+    mut commands: Commands,
+    cloths: Query<(
+        &ClothMesh,
+        &ClothParticles,
+        &ClothNormals,
+        &ClothTopology,
+        &ClothFrame,
+        &ClothBounds,
+    )>,
+    mut aabbs: Query<&mut Aabb>,
+) {
+    for (cloth_mesh, particles, normals, topology, frame, bounds) in &cloths {
+        if cloth_mesh.is_stale(topology, normals) || particles.is_empty() {
+            continue;
+        }
+        let (a, b) = (bounds.min / frame.scale(), bounds.max / frame.scale());
+        let around = Aabb::from_min_max(a.min(b), a.max(b));
+        for part in &cloth_mesh.parts {
+            let from_cloth = part.follow.from_cloth;
+            let new = from_cloth.map_or(around, |from_cloth| moved(around, from_cloth));
+            if let Ok(mut aabb) = aabbs.get_mut(part.entity) {
+                aabb.set_if_neq(new);
+            } else if let Ok(mut shown) = commands.get_entity(part.entity) {
+                shown.insert(new);
+            }
+        }
+    }
+}
+
+/// Computes positions, normals and tangents between the last two steps.
 ///
 /// The particles live in the entity's rigid frame, its mesh in its own space: they differ by the scale alone. A mesh of an entity
-/// below lies where that was when the cloth was made. A mesh that
-/// would stay as it is, while the simulation is paused or the cloth sleeps, is left alone.
-pub(super) fn write_cloth_mesh(
-    mut commands: Commands,
+/// below lies where that was when the cloth was made. A mesh that would stay as it is, while the simulation is paused or the cloth
+/// sleeps, is left alone, and one that nobody sees as the settings say.
+pub(super) fn follow_cloth(
     settings: Res<ClothMeshSettings>,
+    uploads: Option<Res<VertexUploads>>,
     fixed: Option<Res<Time<Fixed>>>,
     step: Option<Res<ClothStep>>,
     mut cloths: Query<(
@@ -32,68 +79,85 @@ pub(super) fn write_cloth_mesh(
         &ClothNormals,
         &ClothTopology,
         &ClothFrame,
-        &ClothBounds,
         (&AttachedParticles, &GlobalTransform, &mut ClothDrawnHolds),
     )>,
     places: Query<&GlobalTransform>,
-    mut aabbs: Query<&mut Aabb>,
-    mut meshes: ResMut<Assets<Mesh>>,
+    seen: Query<&ViewVisibility>,
+    meshes: Res<Assets<Mesh>>,
 ) {
     let Some(step) = step else {
         return;
     };
+    let asset = settings.write == ClothMeshWrite::Asset || uploads.is_none();
     let fraction = match fixed {
         Some(fixed) if settings.interpolate && step.running() => {
             fixed.overstep_fraction().clamp(0.0, 1.0)
         }
         _ => 1.0,
     };
-    for (mut cloth_mesh, rest, particles, normals, topology, frame, bounds, held) in &mut cloths {
+    let skips = !asset && settings.unseen == ClothUnseen::Skip;
+    let mut jobs = Vec::new();
+    for (cloth_mesh, rest, particles, normals, topology, frame, held) in &mut cloths {
         // One that sleeps stays where it fell asleep.
         let (steps, fraction) = match rest.asleep_since() {
             Some(step) => (step, 1.0),
             None => (step.steps(), fraction),
         };
-        let now = (steps, fraction, frame.scale());
-        let stale =
-            cloth_mesh.revision != topology.revision || normals.shading() != cloth_mesh.shading;
-        if stale || particles.is_empty() {
+        let scale = frame.scale();
+        let now = Some((steps, fraction, scale));
+        let cloth_mesh = cloth_mesh.into_inner();
+        if cloth_mesh.is_stale(topology, normals) || particles.is_empty() {
             continue;
         }
-        let (attached, place, mut drawn) = held;
+        let is_seen = |part: &ClothMeshPart| !skips || seen.get(part.entity).is_ok_and(|v| v.get());
+        if !cloth_mesh
+            .parts
+            .iter()
+            .any(|part| is_seen(part) || !part.in_asset)
+        {
+            continue;
+        }
+        let (attached, place, holds) = held;
+        let holds = holds.into_inner();
         if !rest.is_asleep() {
             let now = |target| places.get(target).ok().copied();
-            drawn.update(topology, particles, attached, place, fraction, now);
+            holds.update(topology, particles, attached, place, fraction, now);
         }
-        if cloth_mesh.written == Some(now) && (drawn.is_still() || rest.is_asleep()) {
-            continue;
-        }
-        let scale = frame.scale();
-        let (a, b) = (bounds.min / scale, bounds.max / scale);
-        let around = Aabb::from_min_max(a.min(b), a.max(b));
+        let moves = !(holds.is_still() || rest.is_asleep());
+        let drawn = Drawn {
+            particles,
+            normals,
+            holds,
+            fraction,
+            scale,
+        };
         for part in &mut cloth_mesh.parts {
-            let Some(mut mesh) = meshes.get_mut(&part.handle) else {
+            if part.in_asset && !is_seen(part) {
                 continue;
-            };
-            write_vertices(
-                &mut mesh,
-                part,
-                (particles, &drawn),
-                normals,
-                fraction,
-                scale,
-            );
-            let new = part
-                .from_cloth
-                .map_or(around, |from_cloth| moved(around, from_cloth));
-            if let Ok(mut aabb) = aabbs.get_mut(part.entity) {
-                aabb.set_if_neq(new);
-            } else if let Ok(mut shown) = commands.get_entity(part.entity) {
-                shown.insert(new);
+            }
+            let mesh = meshes.get(&part.handle);
+            let changed = mesh.is_some_and(|mesh| part.check(mesh));
+            if (moves || changed || part.shows != now) && part.packed.is_some() {
+                part.shows = now;
+                jobs.push((drawn, part));
             }
         }
-        cloth_mesh.written = Some(now);
     }
+    // Large meshes are shared out one by one, small ones several to a task.
+    let (mut small, large): (Vec<_>, Vec<_>) = jobs
+        .into_iter()
+        .partition(|(_, part)| part.follow.len() <= PIECE);
+    for (drawn, part) in large {
+        part.write(drawn);
+    }
+    let vertices: usize = small.iter().map(|(_, part)| part.follow.len()).sum();
+    let tasks = (vertices / PIECE).clamp(1, 64);
+    let group = small.len().div_ceil(tasks).max(1);
+    share(small.chunks_mut(group), &|_, group| {
+        for (drawn, part) in group {
+            part.write(*drawn);
+        }
+    });
 }
 
 /// A box around a box in another space.
@@ -104,70 +168,118 @@ fn moved(aabb: Aabb, by: Affine3A) -> Aabb {
     }
 }
 
-fn write_vertices(
-    mesh: &mut Mesh,
-    part: &mut ClothMeshPart,
-    (particles, drawn): (&ClothParticles, &ClothDrawnHolds),
-    normals: &ClothNormals,
-    fraction: f32,
-    scale: Vec3,
-) {
-    let unscale = scale.recip();
-    // Normals transform by the inverse of the scale, so here by the scale.
-    let uniform = scale.x == scale.y && scale.y == scale.z && scale.x > 0.0;
-    let Some(mut positions) = take(mesh, Mesh::ATTRIBUTE_POSITION) else {
-        return;
-    };
-    for (position, &particle) in positions.iter_mut().zip(&part.particle_of_vertex) {
-        let i = particle as usize;
-        let place = particles.interpolated(i, fraction) + drawn.offset(i);
-        *position = (place * unscale).to_array();
+impl ClothMesh {
+    /// Whether it is to be built anew.
+    fn is_stale(&self, topology: &ClothTopology, normals: &ClothNormals) -> bool {
+        self.revision != topology.revision || normals.shading() != self.shading
     }
-    let Some(mut vertex_normals) = take(mesh, Mesh::ATTRIBUTE_NORMAL) else {
-        return;
-    };
-    for (normal, &index) in vertex_normals.iter_mut().zip(&part.normal_of_vertex) {
-        let n = normals.interpolated(index as usize, fraction);
-        *normal = if uniform {
-            n
-        } else {
-            (n * scale).normalize_or(n)
-        }
-        .to_array();
-    }
-    if let Some(from_cloth) = part.from_cloth {
-        for position in &mut positions {
-            *position = from_cloth
-                .transform_point3(Vec3::from(*position))
-                .to_array();
-        }
-        // Normals transform by the inverse transpose.
-        let to_normal = Mat3::from(from_cloth.matrix3).inverse().transpose();
-        for normal in &mut vertex_normals {
-            let n = Vec3::from(*normal);
-            *normal = (to_normal * n).normalize_or(n).to_array();
-        }
-    }
-    for &vertex in &part.backs {
-        let normal = &mut vertex_normals[vertex as usize];
-        *normal = (-Vec3::from(*normal)).to_array();
-    }
-    if let Some(tangents) = &mut part.tangents
-        && let Some(VertexAttributeValues::Float32x4(values)) = mesh
-            .try_attribute_mut_option(Mesh::ATTRIBUTE_TANGENT)
-            .ok()
-            .flatten()
-    {
-        tangents.write(&positions, &vertex_normals, values);
-    }
-    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, positions);
-    mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vertex_normals);
 }
 
-/// Takes the values of an attribute out of a mesh, to write several attributes at a time without a copy.
-fn take(mesh: &mut Mesh, attribute: bevy_mesh::MeshVertexAttribute) -> Option<Vec<[f32; 3]>> {
-    match mesh.try_attribute_mut_option(attribute).ok().flatten() {
-        Some(VertexAttributeValues::Float32x3(values)) => Some(std::mem::take(values)),
-        _ => None,
+impl ClothMeshPart {
+    /// Sees to it that its vertices have the attributes of the mesh; whether they had to be made.
+    fn check(&mut self, mesh: &Mesh) -> bool {
+        let version = match &self.packed {
+            Some(packed) if packed.is_of(mesh) && !self.outdated => return false,
+            Some(packed) => packed.version + 1,
+            None => 0,
+        };
+        self.outdated = false;
+        self.packed = Packed::of(mesh, version);
+        self.packed.is_some()
+    }
+
+    fn write(&mut self, drawn: Drawn) {
+        if let Some(packed) = &mut self.packed
+            && packed.words.len() == self.follow.len() * packed.stride
+        {
+            self.follow.write(drawn, packed);
+            self.fresh = true;
+        }
+    }
+}
+
+/// Gives the vertices that were computed to the renderer, or to the mesh asset: those of a new mesh, or where there is no other
+/// way.
+pub(super) fn write_cloth_mesh(
+    settings: Res<ClothMeshSettings>,
+    mut cloths: Query<&mut ClothMesh>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut uploads: Option<ResMut<VertexUploads>>,
+    mut warned: Local<bool>,
+) {
+    for mut cloth_mesh in &mut cloths {
+        // What is written changes nothing that others look at.
+        let cloth_mesh = cloth_mesh.bypass_change_detection();
+        for part in &mut cloth_mesh.parts {
+            let id = part.handle.id();
+            let Some(packed) = part.packed.as_mut().filter(|_| part.fresh) else {
+                continue;
+            };
+            part.fresh = false;
+            let wanted = settings.write == ClothMeshWrite::Slab;
+            let possible =
+                |uploads: &VertexUploads| packed.complete && !uploads.refused.contains(&id);
+            let possible = uploads.as_deref().map(possible);
+            if wanted && possible == Some(false) && !*warned {
+                warn!(
+                    "the mesh of {} cannot be written where the renderer keeps it: it is written as an asset, which is slower",
+                    part.entity
+                );
+                *warned = true;
+            }
+            let direct = wanted && part.in_asset && possible == Some(true);
+            if let (true, Some(uploads)) = (direct, &mut uploads) {
+                let (stride, version) = (packed.stride, packed.version);
+                let spent = uploads.spent.remove(&id);
+                let next = spent.filter(|spent| {
+                    spent.version == version && spent.words.len() == packed.words.len()
+                });
+                let next = next.map_or_else(|| packed.words.clone(), |spent| spent.words);
+                let words = std::mem::replace(&mut packed.words, next);
+                let vertices = Vertices {
+                    words,
+                    stride,
+                    version,
+                };
+                uploads.fresh.insert(id, vertices);
+                continue;
+            }
+            let is_new = !std::mem::replace(&mut part.in_asset, true);
+            if is_new && let Some(mesh) = meshes.get_mut_untracked(&part.handle) {
+                // That it is new is known already.
+                packed.write_to(mesh);
+            } else if let Some(mut mesh) = meshes.get_mut(&part.handle) {
+                packed.write_to(&mut mesh);
+                part.own_change = true;
+            }
+            if let Some(uploads) = &mut uploads {
+                uploads.fresh.remove(&id);
+                uploads.forgotten.push(id);
+            }
+        }
+    }
+}
+
+/// Notes which meshes others have changed: their other attributes are to be read again.
+pub(super) fn watch_meshes(
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut cloths: Query<&mut ClothMesh>,
+) {
+    let changed: HashSet<AssetId<Mesh>> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    if changed.is_empty() {
+        return;
+    }
+    for mut cloth_mesh in &mut cloths {
+        for part in &mut cloth_mesh.bypass_change_detection().parts {
+            if changed.contains(&part.handle.id()) && !std::mem::take(&mut part.own_change) {
+                part.outdated = true;
+            }
+        }
     }
 }

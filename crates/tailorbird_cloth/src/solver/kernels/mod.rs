@@ -10,6 +10,7 @@ pub(crate) mod cylinder;
 pub mod distance;
 pub mod half_space;
 pub mod hinge;
+pub(crate) mod interleave;
 pub(crate) mod lanes;
 pub(crate) mod lattice;
 pub(crate) mod limit;

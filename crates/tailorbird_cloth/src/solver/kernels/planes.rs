@@ -79,7 +79,7 @@ impl Planes<'_> {
     /// The nearest planes of points that lie near each other.
     ///
     /// Let m be the plane nearest to the middle of the points, and ρ how far they are from there. Plane k can be nearer than m to
-    /// one of them only if it is no further from the middle than m by |n_k − n_m| ρ.
+    /// one of them only if it is no further from the middle than m by |n′ − n| ρ, with n and n′ their normals.
     #[inline(always)]
     fn of_some<S: Simd>(&self, simd: S, p: V3<S>, mut nearest: Nearest<S>) -> Nearest<S> {
         let middle = Vec3::new(middle::<S>(p.x), middle::<S>(p.y), middle::<S>(p.z));

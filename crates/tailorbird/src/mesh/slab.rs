@@ -1,0 +1,149 @@
+//! Writes vertices to where the renderer keeps them, past the mesh asset.
+//!
+//! A change of the asset costs a copy of the mesh, its memory on the GPU anew, all attributes interleaved again, and the indices.
+//! The vertices that follow a cloth go there as they are, in one piece. What is there belongs to the asset: when the renderer moves
+//! it or takes it from the asset again, it is written again.
+
+use std::collections::{HashMap, HashSet};
+
+use bevy_app::App;
+use bevy_asset::AssetId;
+use bevy_ecs::prelude::*;
+use bevy_mesh::Mesh;
+use bevy_render::{
+    ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems,
+    mesh::{RenderMesh, allocator::MeshAllocator},
+    render_asset::{ExtractedAssets, RenderAssets},
+    render_resource::{BufferId, BufferUsages},
+    renderer::RenderQueue,
+};
+
+/// Frames in which a mesh has to be another than its vertices before it is given up.
+const PATIENCE: u32 = 3;
+
+/// The vertices of a mesh.
+pub(super) struct Vertices {
+    pub words: Vec<f32>,
+    /// Numbers of a vertex.
+    pub stride: usize,
+    pub version: u32,
+}
+
+/// What goes to the renderer, and what comes back from it. It is there where there is a renderer.
+#[derive(Resource, Default)]
+pub(super) struct VertexUploads {
+    /// Vertices that changed.
+    pub fresh: HashMap<AssetId<Mesh>, Vertices>,
+    /// Meshes that are written as assets.
+    pub forgotten: Vec<AssetId<Mesh>>,
+    /// Vertices that are not needed any more, to be written anew.
+    pub spent: HashMap<AssetId<Mesh>, Vertices>,
+    /// Meshes that cannot be written in this way.
+    pub refused: HashSet<AssetId<Mesh>>,
+}
+
+/// The vertices as they are to be drawn.
+#[derive(Resource, Default)]
+struct ShownVertices {
+    all: HashMap<AssetId<Mesh>, Shown>,
+    refused: Vec<AssetId<Mesh>>,
+}
+
+struct Shown {
+    vertices: Vertices,
+    /// Where they were written: in which buffer, from which vertex on.
+    place: Option<(BufferId, u32)>,
+    /// Frames in which the mesh was another.
+    mismatches: u32,
+}
+
+/// Adds what writes vertices, where there is a renderer.
+pub(super) fn finish(app: &mut App) {
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .init_resource::<ShownVertices>()
+        .add_systems(ExtractSchedule, extract_vertices)
+        .add_systems(
+            Render,
+            write_vertices
+                .in_set(RenderSystems::PrepareResources)
+                .run_if(resource_exists::<MeshAllocator>),
+        );
+    app.init_resource::<VertexUploads>();
+}
+
+fn extract_vertices(mut main: ResMut<MainWorld>, mut shown: ResMut<ShownVertices>) {
+    let Some(mut uploads) = main.get_resource_mut::<VertexUploads>() else {
+        return;
+    };
+    let uploads = &mut *uploads;
+    uploads.refused.extend(shown.refused.drain(..));
+    for id in uploads.forgotten.drain(..) {
+        shown.all.remove(&id);
+    }
+    // What nobody took in the last frame is not taken in this one.
+    uploads.spent.clear();
+    for (id, vertices) in uploads.fresh.drain() {
+        match shown.all.get_mut(&id) {
+            Some(shown) => {
+                let before = std::mem::replace(&mut shown.vertices, vertices);
+                uploads.spent.insert(id, before);
+                shown.place = None;
+            }
+            None => {
+                let new = Shown {
+                    vertices,
+                    place: None,
+                    mismatches: 0,
+                };
+                shown.all.insert(id, new);
+            }
+        }
+    }
+}
+
+fn write_vertices(
+    mut shown: ResMut<ShownVertices>,
+    allocator: Res<MeshAllocator>,
+    meshes: Res<RenderAssets<RenderMesh>>,
+    extracted: Res<ExtractedAssets<RenderMesh>>,
+    queue: Res<RenderQueue>,
+) {
+    let ShownVertices { all, refused } = &mut *shown;
+    for id in &extracted.removed {
+        if !extracted.added.contains(id) {
+            all.remove(id);
+        }
+    }
+    for (id, _) in &extracted.extracted {
+        if let Some(shown) = all.get_mut(id) {
+            shown.place = None;
+        }
+    }
+    for (id, shown) in all {
+        let (Some(slice), Some(mesh)) = (allocator.mesh_vertex_slice(id), meshes.get(*id)) else {
+            continue;
+        };
+        let place = Some((slice.buffer.id(), slice.range.start));
+        if shown.place == place {
+            continue;
+        }
+        let Vertices { words, stride, .. } = &shown.vertices;
+        let size = mesh.layout.0.layout().array_stride;
+        let right = size == 4 * *stride as u64
+            && words.len() == *stride * mesh.vertex_count as usize
+            && slice.buffer.usage().contains(BufferUsages::COPY_DST);
+        if right {
+            let offset = u64::from(slice.range.start) * size;
+            queue.write_buffer(slice.buffer, offset, bytemuck::cast_slice(words));
+            (shown.place, shown.mismatches) = (place, 0);
+        } else {
+            shown.mismatches += 1;
+            if shown.mismatches == PATIENCE {
+                refused.push(*id);
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Particles and normals between the last two steps, as the interleaved vertices of a renderer.
+
+use bevy_math::Vec3;
+use fearless_simd::Level;
+
+use crate::{
+    drawn::ClothDrawnHolds,
+    normals::ClothNormals,
+    particles::ClothParticles,
+    solver::kernels::interleave::{Between, Last, interleave, interleave_listed, interleave_sheet},
+};
+
+/// An attribute of three numbers in interleaved vertices.
+#[derive(Debug)]
+pub struct Interleaved<'a> {
+    /// All numbers of all vertices.
+    pub words: &'a mut [f32],
+    /// Numbers of a vertex.
+    pub stride: usize,
+    /// Where the attribute starts in a vertex; there are three numbers from there on.
+    pub offset: usize,
+}
+
+/// Rows of a sheet as interleaved vertices.
+#[derive(Debug)]
+pub struct SheetVertices<'a> {
+    /// All numbers of all vertices.
+    pub words: &'a mut [f32],
+    /// Numbers of a vertex.
+    pub stride: usize,
+    /// Vertices of a row.
+    pub columns: usize,
+    /// Where the position, the normal and the tangent start in a vertex. The tangent has four numbers.
+    pub places: [usize; 3],
+    /// The last number of the tangents.
+    pub handedness: f32,
+}
+
+/// Which particle, or normal, each vertex follows; in storage order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VertexOrder<'a> {
+    /// The first vertex follows this one, the second the next, and so on.
+    From(usize),
+    /// These.
+    Listed(&'a [u32]),
+}
+
+impl ClothParticles {
+    /// Writes where particles are drawn between the last two steps: `fraction` 0 is the one before, 1 the last one. Each coordinate is
+    /// multiplied by its factor.
+    ///
+    /// # Panics
+    /// When there is no such particle, or an attribute does not fit in a vertex.
+    pub fn write_interpolated(
+        &self,
+        fraction: f32,
+        drawn: &ClothDrawnHolds,
+        factors: Vec3,
+        order: VertexOrder,
+        to: Interleaved,
+    ) {
+        let between = Between {
+            ends: [self.previous_points(), self.points()],
+            fraction,
+            offsets: drawn.offsets(),
+            last: Last::Scale(factors),
+        };
+        write(between, order, to);
+    }
+}
+
+impl ClothParticles {
+    /// Writes positions, normals and tangents of the rows of a grid from `first_row` on, as many as there is room for, between the last two
+    /// steps: `fraction` 0 is the one before, 1 the last one. Each coordinate of a position is multiplied by its factor. A tangent points
+    /// along the row.
+    ///
+    /// # Panics
+    /// When there are not as many particles and smooth normals, or an attribute does not fit in a vertex.
+    pub fn write_sheet(
+        &self,
+        fraction: f32,
+        drawn: &ClothDrawnHolds,
+        normals: &ClothNormals,
+        factors: Vec3,
+        first_row: usize,
+        to: SheetVertices,
+    ) {
+        let [position, normal, tangent] = to.places;
+        let fits = position.max(normal) + 3 <= to.stride && tangent + 4 <= to.stride;
+        assert!(fits && to.columns > 1, "attributes within a vertex");
+        let positions = Between {
+            ends: [self.previous_points(), self.points()],
+            fraction,
+            offsets: drawn.offsets(),
+            last: Last::Scale(factors),
+        };
+        let normals = Between {
+            ends: normals.ends(),
+            offsets: None,
+            last: Last::Unit,
+            ..positions
+        };
+        interleave_sheet(Level::new(), [positions, normals], first_row, to);
+    }
+}
+
+impl ClothNormals {
+    /// Writes unit normals between the last two steps: `fraction` 0 is the one before, 1 the last one.
+    ///
+    /// # Panics
+    /// When there is no such normal, or an attribute does not fit in a vertex.
+    pub fn write_interpolated(&self, fraction: f32, order: VertexOrder, to: Interleaved) {
+        let between = Between {
+            ends: self.ends(),
+            fraction,
+            offsets: None,
+            last: Last::Unit,
+        };
+        write(between, order, to);
+    }
+}
+
+fn write(between: Between, order: VertexOrder, to: Interleaved) {
+    assert!(to.offset + 3 <= to.stride, "an attribute within a vertex");
+    match order {
+        VertexOrder::From(first) => interleave(Level::new(), between, first, to),
+        VertexOrder::Listed(list) => interleave_listed(between, list, to),
+    }
+}
