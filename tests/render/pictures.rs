@@ -28,6 +28,15 @@ fn changed(a: &[[u8; 3]], b: &[[u8; 3]]) -> f32 {
     a.iter().zip(b).filter(|pair| differs(*pair)).count() as f32 / a.len() as f32
 }
 
+/// Part of the pixels that have the colour of the skirt.
+fn skirt(picture: &[[u8; 3]]) -> f32 {
+    let is_red = |[r, g, b]: &[u8; 3]| {
+        let other = f32::from(*g.max(b));
+        *r > 60 && f32::from(*r) > 1.3 * other
+    };
+    picture.iter().filter(|pixel| is_red(pixel)).count() as f32 / picture.len() as f32
+}
+
 fn check(scene: SceneKind) {
     if !graphics(&format!("pictures of the scene {scene}")) {
         return;
@@ -56,6 +65,10 @@ fn check(scene: SceneKind) {
         colors.sort_unstable();
         colors.dedup();
         assert!(colors.len() > 20, "{scene}: {} colours", colors.len());
+        if scene == SceneKind::Garment {
+            let part = skirt(picture);
+            assert!(part > 0.015, "the skirt is {part} of the picture");
+        }
     }
     for pair in pictures.windows(2) {
         let part = changed(&pair[0], &pair[1]);

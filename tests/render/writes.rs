@@ -136,7 +136,7 @@ fn story(write: ClothMeshWrite, pipelined: bool) -> Option<Vec<Image>> {
     app.app.world_mut().resource_mut::<Time<Virtual>>().pause();
     app.update(2);
     paint(&mut app, first, [0.2, 1.0, 0.2, 1.0]);
-    app.update(4);
+    app.update(2);
     shoot(&mut app, "paint_still");
     app.app
         .world_mut()

@@ -24,11 +24,8 @@ fn ball(on_rail: bool) -> Motion {
 #[test]
 fn a_ball_on_a_rail_stays_on_it() {
     let free = ball(false);
-    assert!(
-        free.position.with_y(0.0).length() < 0.4,
-        "a free one rolls to the middle: {:?}",
-        free.position
-    );
+    let rolled = (free.position - PLACE).with_y(0.0).length();
+    assert!(rolled > 0.02, "a free one rolls to the middle: {rolled}");
     let held = ball(true);
     let away = (held.position - PLACE).with_y(0.0);
     assert!(away.length() < 1e-5, "{away}");

@@ -17,6 +17,7 @@ use crate::{
     grab::ClothGrab,
     material::ClothMaterial,
     motion::MotionState,
+    normals::ClothShading,
     particles::ClothParticles,
     pins::ClothPins,
     solver::ClothSolver,
@@ -31,7 +32,7 @@ use crate::{
 /// quarter of a second: what trembles on the spot rests.
 ///
 /// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
-/// transform, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
+/// transform, its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
 /// moves, appears or disappears where it lies, and when what holds an attachment or a target of a motion constraint has moved by
 /// 0.1 mm. [`ClothRest::wake`] wakes it by hand.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -41,7 +42,7 @@ pub struct ClothSleep {
     pub enabled: bool,
     /// What is slower rests [m/s].
     pub speed: f32,
-    /// How long the cloth has to be at rest \[s\].
+    /// How long the cloth has to be at rest \[s\]; at least a quarter of a second.
     pub seconds: f32,
 }
 
@@ -180,6 +181,7 @@ pub fn wake_cloths(
                 Ref<ClothMaterial>,
                 Ref<ClothSolver>,
                 Ref<ClothTopology>,
+                Ref<ClothShading>,
             ),
             (
                 &ClothGrab,
@@ -196,7 +198,7 @@ pub fn wake_cloths(
 ) {
     for (entity, mut rest, settings, acting, (frame, bounds, layers), mut status) in &mut cloths {
         let (grab, forces, attached, motion) = acting;
-        let (sleep, pins, material, solver, topology) = settings;
+        let (sleep, pins, material, solver, topology, shading) = settings;
         if sleep.is_changed() {
             let errors = sleep.errors();
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Sleep, errors);
@@ -205,7 +207,8 @@ pub fn wake_cloths(
             || pins.is_changed()
             || material.is_changed()
             || solver.is_changed()
-            || topology.is_changed();
+            || topology.is_changed()
+            || shading.is_changed();
         let pulled = grab.particle().is_some()
             || !forces.is_empty()
             || frame.is_moving()
@@ -251,7 +254,7 @@ impl ClothStagesItem<'_, '_> {
             return;
         }
         self.rest.seconds += seconds;
-        if self.rest.seconds >= sleep.seconds {
+        if self.rest.seconds >= sleep.seconds.max(CALM) {
             self.particles.stop();
             let around = around(
                 step,

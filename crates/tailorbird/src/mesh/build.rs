@@ -7,11 +7,14 @@ use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
-    cloth::Cloth, drawn::ClothDrawnHolds, normals::ClothShading, topology::ClothTopology,
+    cloth::Cloth,
+    drawn::ClothDrawnHolds,
+    normals::{ClothNormals, ClothShading},
+    topology::ClothTopology,
 };
 
 use super::{
-    follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
+    ClothMeshWrite, follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
     vertices::Vertices,
 };
 
@@ -45,6 +48,8 @@ pub struct ClothMeshPart {
     pub(super) fresh: bool,
     /// Whether the asset has been written since the mesh was built.
     pub(super) in_asset: bool,
+    /// Where the vertices were to go when they were computed last.
+    pub(super) went: Option<ClothMeshWrite>,
     /// Whether the last change of the asset was ours.
     pub(super) own_change: bool,
     /// Whether others have changed the asset.
@@ -61,6 +66,7 @@ impl ClothMeshPart {
             shows: None,
             fresh: false,
             in_asset: false,
+            went: None,
             own_change: false,
             outdated: false,
         }
@@ -104,13 +110,14 @@ pub(super) fn build_cloth_mesh(
         &Cloth,
         &ClothTopology,
         &ClothShading,
+        &ClothNormals,
         Option<&ClothMeshSource>,
         Option<&ClothMesh>,
     )>,
     meshes_of_parts: Query<&Mesh3d>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
-    for (entity, cloth, topology, shading, source, built) in &cloths {
+    for (entity, cloth, topology, shading, normals, source, built) in &cloths {
         let shows = |part: &ClothMeshPart| match meshes_of_parts.get(part.entity) {
             Ok(mesh) => mesh.0 == part.handle,
             // The cloth itself has lost it; a part that is gone stays away.
@@ -121,7 +128,8 @@ pub(super) fn build_cloth_mesh(
                 && built.shading == *shading
                 && built.parts.iter().all(shows)
         });
-        if current || topology.revision == 0 {
+        // A mesh that could not be written yet would be nowhere for a while.
+        if current || topology.revision == 0 || normals.shading() != *shading {
             continue;
         }
         let of_meshes =
@@ -144,8 +152,8 @@ pub(super) fn build_cloth_mesh(
             });
             // The same asset where there is one, so that whoever holds its handle keeps it.
             part.handle = match before.map(|before| before.handle.clone()) {
-                Some(handle) if meshes.insert(&handle, mesh.clone()).is_ok() => {
-                    part.own_change = true;
+                Some(handle) if meshes.contains(&handle) => {
+                    part.own_change = meshes.insert(&handle, mesh).is_ok();
                     handle
                 }
                 _ => meshes.add(mesh),

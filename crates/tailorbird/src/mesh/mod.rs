@@ -27,7 +27,8 @@ use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
 
-/// What happens to meshes of cloths that no camera and no light with shadows sees.
+/// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
+/// entities have the same mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum ClothUnseen {
@@ -83,7 +84,7 @@ pub enum ClothMeshWrite {
     Asset,
 }
 
-/// The systems that build and write meshes, in `PostUpdate`.
+/// The systems that build and write meshes, in `PostUpdate`: some before the visibility of entities is checked, some after it.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClothMeshSystems;
 
@@ -99,6 +100,7 @@ impl Plugin for ClothMeshPlugin {
                     .after(TransformSystems::Propagate)
                     .run_if(resource_exists::<Assets<Mesh>>),
             )
+            .add_observer(slab::forget_vertices)
             .add_systems(
                 PreUpdate,
                 from_mesh::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),

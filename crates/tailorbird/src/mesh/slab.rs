@@ -13,12 +13,14 @@ use bevy_mesh::Mesh;
 use bevy_render::{
     ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems,
     mesh::{RenderMesh, allocator::MeshAllocator},
-    render_asset::{ExtractedAssets, RenderAssets},
+    render_asset::{AssetExtractionSystems, ExtractedAssets, RenderAssets},
     render_resource::{BufferId, BufferUsages},
     renderer::RenderQueue,
 };
 
-/// Frames in which a mesh has to be another than its vertices before it is given up.
+use super::ClothMesh;
+
+/// How often in a row vertices must not fit their mesh before it is given up.
 const PATIENCE: u32 = 3;
 
 /// The vertices of a mesh.
@@ -53,7 +55,9 @@ struct Shown {
     vertices: Vertices,
     /// Where they were written: in which buffer, from which vertex on.
     place: Option<(BufferId, u32)>,
-    /// Frames in which the mesh was another.
+    /// Whether these vertices were held against the mesh.
+    judged: bool,
+    /// How many in a row did not fit.
     mismatches: u32,
 }
 
@@ -64,7 +68,10 @@ pub(super) fn finish(app: &mut App) {
     };
     render_app
         .init_resource::<ShownVertices>()
-        .add_systems(ExtractSchedule, extract_vertices)
+        .add_systems(
+            ExtractSchedule,
+            extract_vertices.after(AssetExtractionSystems),
+        )
         .add_systems(
             Render,
             write_vertices
@@ -74,7 +81,44 @@ pub(super) fn finish(app: &mut App) {
     app.init_resource::<VertexUploads>();
 }
 
-fn extract_vertices(mut main: ResMut<MainWorld>, mut shown: ResMut<ShownVertices>) {
+/// Forgets the vertices of a cloth that goes: its meshes belong to others, if to anyone.
+pub(super) fn forget_vertices(
+    gone: On<Remove, ClothMesh>,
+    cloths: Query<&ClothMesh>,
+    uploads: Option<ResMut<VertexUploads>>,
+) {
+    if let (Ok(cloth), Some(mut uploads)) = (cloths.get(gone.entity), uploads) {
+        for part in &cloth.parts {
+            uploads.forget(part.handle.id());
+            uploads.refused.remove(&part.handle.id());
+        }
+    }
+}
+
+impl VertexUploads {
+    /// Leaves a mesh to its asset.
+    pub fn forget(&mut self, id: AssetId<Mesh>) {
+        self.fresh.remove(&id);
+        self.forgotten.push(id);
+    }
+}
+
+fn extract_vertices(
+    mut main: ResMut<MainWorld>,
+    mut shown: ResMut<ShownVertices>,
+    extracted: Res<ExtractedAssets<RenderMesh>>,
+) {
+    for id in &extracted.removed {
+        if !extracted.added.contains(id) {
+            shown.all.remove(id);
+        }
+    }
+    // What is taken from the asset again is to be written again, though it may lie where it lay.
+    for (id, _) in &extracted.extracted {
+        if let Some(shown) = shown.all.get_mut(id) {
+            shown.place = None;
+        }
+    }
     let Some(mut uploads) = main.get_resource_mut::<VertexUploads>() else {
         return;
     };
@@ -90,12 +134,13 @@ fn extract_vertices(mut main: ResMut<MainWorld>, mut shown: ResMut<ShownVertices
             Some(shown) => {
                 let before = std::mem::replace(&mut shown.vertices, vertices);
                 uploads.spent.insert(id, before);
-                shown.place = None;
+                (shown.place, shown.judged) = (None, false);
             }
             None => {
                 let new = Shown {
                     vertices,
                     place: None,
+                    judged: false,
                     mismatches: 0,
                 };
                 shown.all.insert(id, new);
@@ -108,20 +153,9 @@ fn write_vertices(
     mut shown: ResMut<ShownVertices>,
     allocator: Res<MeshAllocator>,
     meshes: Res<RenderAssets<RenderMesh>>,
-    extracted: Res<ExtractedAssets<RenderMesh>>,
     queue: Res<RenderQueue>,
 ) {
     let ShownVertices { all, refused } = &mut *shown;
-    for id in &extracted.removed {
-        if !extracted.added.contains(id) {
-            all.remove(id);
-        }
-    }
-    for (id, _) in &extracted.extracted {
-        if let Some(shown) = all.get_mut(id) {
-            shown.place = None;
-        }
-    }
     for (id, shown) in all {
         let (Some(slice), Some(mesh)) = (allocator.mesh_vertex_slice(id), meshes.get(*id)) else {
             continue;
@@ -139,7 +173,7 @@ fn write_vertices(
             let offset = u64::from(slice.range.start) * size;
             queue.write_buffer(slice.buffer, offset, bytemuck::cast_slice(words));
             (shown.place, shown.mismatches) = (place, 0);
-        } else {
+        } else if !std::mem::replace(&mut shown.judged, true) {
             shown.mismatches += 1;
             if shown.mismatches == PATIENCE {
                 refused.push(*id);

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy_asset::{AssetEvent, AssetId, Assets};
+use bevy_asset::{AssetEvent, AssetId, Assets, RenderAssetUsages};
 use bevy_camera::{primitives::Aabb, visibility::ViewVisibility};
 use bevy_ecs::prelude::*;
 use bevy_math::Affine3A;
@@ -88,16 +88,21 @@ pub(super) fn follow_cloth(
     let Some(step) = step else {
         return;
     };
-    let asset = settings.write == ClothMeshWrite::Asset || uploads.is_none();
     let fraction = match fixed {
         Some(fixed) if settings.interpolate && step.running() => {
             fixed.overstep_fraction().clamp(0.0, 1.0)
         }
         _ => 1.0,
     };
-    let skips = !asset && settings.unseen == ClothUnseen::Skip;
+    let way = if uploads.is_some() {
+        settings.write
+    } else {
+        ClothMeshWrite::Asset
+    };
+    let skips = way == ClothMeshWrite::Slab && settings.unseen == ClothUnseen::Skip;
     let mut jobs = Vec::new();
-    for (cloth_mesh, rest, particles, normals, topology, frame, held) in &mut cloths {
+    let mut all: Vec<_> = cloths.iter_mut().collect();
+    for (cloth_mesh, rest, particles, normals, topology, frame, held) in &mut all {
         // One that sleeps stays where it fell asleep.
         let (steps, fraction) = match rest.asleep_since() {
             Some(step) => (step, 1.0),
@@ -105,20 +110,13 @@ pub(super) fn follow_cloth(
         };
         let scale = frame.scale();
         let now = Some((steps, fraction, scale));
-        let cloth_mesh = cloth_mesh.into_inner();
+        let cloth_mesh = cloth_mesh.bypass_change_detection();
         if cloth_mesh.is_stale(topology, normals) || particles.is_empty() {
             continue;
         }
         let is_seen = |part: &ClothMeshPart| !skips || seen.get(part.entity).is_ok_and(|v| v.get());
-        if !cloth_mesh
-            .parts
-            .iter()
-            .any(|part| is_seen(part) || !part.in_asset)
-        {
-            continue;
-        }
         let (attached, place, holds) = held;
-        let holds = holds.into_inner();
+        let holds = holds.bypass_change_detection();
         if !rest.is_asleep() {
             let now = |target| places.get(target).ok().copied();
             holds.update(topology, particles, attached, place, fraction, now);
@@ -135,8 +133,11 @@ pub(super) fn follow_cloth(
             if part.in_asset && !is_seen(part) {
                 continue;
             }
+            // Others may have changed an asset that was written in each frame.
+            let elsewhere = part.went.replace(way) != Some(way);
+            part.outdated |= elsewhere && part.in_asset;
             let mesh = meshes.get(&part.handle);
-            let changed = mesh.is_some_and(|mesh| part.check(mesh));
+            let changed = mesh.is_some_and(|mesh| part.check(mesh)) || elsewhere;
             if (moves || changed || part.shows != now) && part.packed.is_some() {
                 part.shows = now;
                 jobs.push((drawn, part));
@@ -216,7 +217,10 @@ pub(super) fn write_cloth_mesh(
                 continue;
             };
             part.fresh = false;
-            let wanted = settings.write == ClothMeshWrite::Slab;
+            let mesh = meshes.get(&part.handle);
+            let drawn =
+                mesh.is_some_and(|mesh| mesh.asset_usage.contains(RenderAssetUsages::RENDER_WORLD));
+            let wanted = settings.write == ClothMeshWrite::Slab && drawn;
             let possible =
                 |uploads: &VertexUploads| packed.complete && !uploads.refused.contains(&id);
             let possible = uploads.as_deref().map(possible);
@@ -245,16 +249,15 @@ pub(super) fn write_cloth_mesh(
                 continue;
             }
             let is_new = !std::mem::replace(&mut part.in_asset, true);
-            if is_new && let Some(mesh) = meshes.get_mut_untracked(&part.handle) {
-                // That it is new is known already.
-                packed.write_to(mesh);
-            } else if let Some(mut mesh) = meshes.get_mut(&part.handle) {
+            if let Some(mut mesh) = meshes.get_mut(&part.handle) {
                 packed.write_to(&mut mesh);
                 part.own_change = true;
             }
             if let Some(uploads) = &mut uploads {
-                uploads.fresh.remove(&id);
-                uploads.forgotten.push(id);
+                uploads.forget(id);
+                if is_new {
+                    uploads.refused.remove(&id);
+                }
             }
         }
     }
