@@ -176,8 +176,7 @@ pub(crate) fn push_colliders(
             continue;
         }
         let body_for_cloth = body.as_ref().and_then(|(entity, b)| b.for_cloth(*entity));
-        if let Some((entity, b)) = &body
-            && b.sleeps
+        if let Some((entity, _)) = &body
             && cloths.rest_on(now)
             && let Ok(mut load) = loads.get_mut(*entity)
         {

@@ -42,11 +42,15 @@ impl ClothLoad {
 
     /// Notes the push of a step on a body that is awake.
     pub fn carry(&mut self, reaction: Option<&ClothReaction>, seconds: f32, memory: f32) {
+        self.push = (Vec3::ZERO, Vec3::ZERO);
+        // A cloth that fell asleep under it carries it as before.
+        if self.at_rest && reaction.is_none() {
+            return;
+        }
         let (force, torque) = per_second(reaction, seconds);
         let part = (seconds / memory.max(seconds)).min(1.0);
         self.mean.0 += part * (force - self.mean.0);
         self.mean.1 += part * (torque - self.mean.1);
-        self.push = (Vec3::ZERO, Vec3::ZERO);
     }
 
     /// Notes the push of a step on a body that sleeps. Velocities that it wakes with [m/s], [rad/s], where it wakes.

@@ -134,7 +134,10 @@ fn a_ball_that_may_sleep_stays_on_a_sheet_and_falls_when_the_sheet_goes() {
         lowest = lowest.min(world.motion(ball).center.y);
     }
     let before = world.motion(ball);
-    println!("{before:?}, lowest {lowest}");
+    println!(
+        "{before:?}, lowest {lowest}, depth {}",
+        world.depth(sheet, ball)
+    );
     assert!(
         before.center.y > -0.6 && world.depth(sheet, ball) < 1e-3,
         "{before:?}"

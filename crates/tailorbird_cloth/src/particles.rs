@@ -52,9 +52,6 @@ pub struct ClothParticles {
     /// Contacts in this substep, noted before the constraints are solved.
     #[reflect(ignore)]
     pub(crate) contacts: Contacts,
-    /// Mean positions of runs of particles in the last while \[m\], in the cloth's frame; empty where nobody asks for them.
-    #[reflect(ignore)]
-    pub(crate) calm: Vec<Vec3>,
     /// Multipliers of the constraints; scratch of a substep.
     #[reflect(ignore)]
     pub(crate) lambda: Vec<f32>,
@@ -140,7 +137,6 @@ impl ClothParticles {
             + lists.map(heap).iter().sum::<usize>()
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.pins)
-            + heap(&self.calm)
             + heap(&self.pulled)
             + self.contacts.around.memory_bytes()
             + heap(&self.attached)

@@ -28,8 +28,7 @@ use crate::{
 };
 
 /// When a cloth falls asleep: after it has been at rest for some time. It is at rest when no more than 1 % of it is
-/// faster than [`speed`](Self::speed), and nothing ten times as fast, in the mean of 16 particles side by side and of a
-/// quarter of a second: what trembles on the spot rests.
+/// faster than [`speed`](Self::speed), and nothing ten times as fast, in the mean of 16 particles side by side.
 ///
 /// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
 /// transform, its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
@@ -42,7 +41,7 @@ pub struct ClothSleep {
     pub enabled: bool,
     /// What is slower rests [m/s].
     pub speed: f32,
-    /// How long the cloth has to be at rest \[s\]; at least a quarter of a second.
+    /// How long the cloth has to be at rest \[s\].
     pub seconds: f32,
 }
 
@@ -137,9 +136,6 @@ impl ClothRest {
 
 /// How many particles that lie side by side are looked at together.
 const RUN: usize = 16;
-
-/// Time that positions are averaged over \[s\].
-const CALM: f32 = 0.25;
 
 /// Room around a cloth in which a collider wakes it \[m\].
 const ROOM: f32 = 0.02;
@@ -249,12 +245,12 @@ impl ClothStagesItem<'_, '_> {
             return;
         }
         let seconds = step.seconds();
-        if !self.particles.is_at_rest(sleep.speed, seconds) {
+        if !self.particles.is_at_rest(sleep.speed * seconds) {
             self.rest.set_if_neq(ClothRest::default());
             return;
         }
         self.rest.seconds += seconds;
-        if self.rest.seconds >= sleep.seconds.max(CALM) {
+        if self.rest.seconds >= sleep.seconds {
             self.particles.stop();
             let around = around(
                 step,
@@ -273,34 +269,36 @@ impl ClothStagesItem<'_, '_> {
 }
 
 impl ClothParticles {
-    /// Whether at most one in a hundred runs of particles is faster than `speed` [m/s], and none ten times as fast, in the mean of
-    /// each run over [`CALM`]: creases that tremble keep nobody awake. To be asked after each step.
-    fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
-        let slow = (speed * CALM).powi(2);
+    /// Whether at most one in a hundred runs of particles moved further in this step than `distance` \[m\], and none ten times
+    /// as far, in the mean of each run: single particles that tremble in a crease keep nobody awake.
+    fn is_at_rest(&self, distance: f32) -> bool {
+        let (slow, fast) = (distance * distance, 100.0 * distance * distance);
         let runs = self.len().div_ceil(RUN);
-        let known = self.calm.len() == runs;
-        self.calm.resize(runs, Vec3::ZERO);
-        let part = if known {
-            seconds / (CALM + seconds)
-        } else {
-            1.0
-        };
-        let (mut count, mut any_fast) = (0, false);
-        for (run, calm) in self.calm.iter_mut().enumerate() {
-            let run = run * RUN..((run + 1) * RUN).min(self.inv_mass.len());
-            let mean = |list: &[f32]| {
-                let len = run.len() as f32;
-                list[run.clone()].iter().sum::<f32>() / len
+        let moved = |run: usize| {
+            let run = run * RUN..((run + 1) * RUN).min(self.len());
+            let mean = |now: &[f32], before: &[f32]| {
+                let ways = now[run.clone()].iter().zip(&before[run.clone()]);
+                ways.map(|(to, from)| to - from).sum::<f32>() / run.len() as f32
             };
-            let position = &self.position;
-            let mean = Vec3::new(mean(&position.x), mean(&position.y), mean(&position.z));
-            // What moves steadily is ahead of its mean by the way of that time.
-            let ahead = (mean - *calm).length_squared();
-            *calm += part * (mean - *calm);
-            count += usize::from(ahead > slow);
-            any_fast |= ahead > 100.0 * slow;
+            let (now, before) = (&self.position, &self.step_position);
+            Vec3::new(
+                mean(&now.x, &before.x),
+                mean(&now.y, &before.y),
+                mean(&now.z, &before.z),
+            )
+        };
+        let most = runs / 100;
+        let mut count = 0;
+        for run in 0..runs {
+            let q = moved(run).length_squared();
+            if q > slow {
+                count += 1;
+                if count > most || q > fast {
+                    return false;
+                }
+            }
         }
-        known && !any_fast && count <= runs / 100
+        true
     }
 
     /// Takes all velocity away, also for interpolation.

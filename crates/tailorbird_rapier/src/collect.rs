@@ -124,8 +124,7 @@ pub(crate) fn push_colliders(
             let body = bodies.bodies.get(handle)?;
             Some((bodies.rigid_body_entity(handle)?, body))
         });
-        if let Some((entity, body)) = body
-            && body.is_sleeping()
+        if let Some((entity, _)) = body
             && cloths.rest_on(now)
             && let Ok(mut load) = loads.get_mut(entity)
         {
