@@ -24,7 +24,7 @@
 //! | shape | margin | cost of a particle in contact, that with a half-space being 1 |
 //! | --- | --- | --- |
 //! | half-space | exact | 1 |
-//! | sphere, capsule, tapered capsule | exact | 1.6 to 2 |
+//! | sphere, capsule, tapered capsule | exact | 1.7 to 2.5 |
 //! | cylinder | sharp edges | 2 |
 //! | cuboid | sharp edges | 1.6 |
 //! | convex hull | sharp edges, bevelled where they are acute | grows with its faces: 30 for a hull of 200 points |
