@@ -57,6 +57,12 @@ impl Default for SimdLevel {
 /// Sharing out costs 15 to 30 µs for each system, about what 4,000 particles cost in the cheapest one.
 const PARALLEL_FROM: usize = 16_384;
 
+/// At most this many times as many substeps are taken for bodies that a cloth carries.
+const MOST_LOADED: f32 = 4.0;
+
+/// Where gravity is less, loads are compared with the cloth's weight in this [m/s²].
+const LEAST_GRAVITY: f32 = 1.0;
+
 impl ClothStep {
     /// The length of the step \[s\].
     pub fn seconds(&self) -> f32 {
@@ -131,10 +137,29 @@ impl ClothStep {
     }
 
     /// How many substeps this cloth takes where it need not keep step with others.
-    pub(crate) fn substeps_of(&self, solver: ClothSolver, topology: &Topology) -> u32 {
-        let wanted = self.fixed_substeps;
-        let automatic = || solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
-        wanted.unwrap_or_else(automatic).max(1)
+    pub(crate) fn substeps_of(
+        &self,
+        solver: ClothSolver,
+        topology: &Topology,
+        particles: &ClothParticles,
+    ) -> u32 {
+        let automatic = || {
+            let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
+            (unloaded as f32 * self.loaded(particles)).ceil() as u32
+        };
+        self.fixed_substeps.unwrap_or_else(automatic).max(1)
+    }
+
+    /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
+    /// on it, and the waves of short length that tension drives become too fast for a substep.
+    fn loaded(&self, particles: &ClothParticles) -> f32 {
+        let load = particles.contacts.around.bodies.load;
+        if load == 0.0 || !particles.inv_mass.contains(&0.0) {
+            return 1.0;
+        }
+        let mass: f32 = particles.mass.iter().sum();
+        let weight = mass * self.gravity.length().max(LEAST_GRAVITY);
+        (1.0 + 1.5 * load / weight).min(MOST_LOADED)
     }
 
     /// The substep `index` of `count`.
@@ -227,12 +252,12 @@ pub fn begin_step(
 /// Chooses the number of substeps: the one that is set, or as many as the cloth needs that needs most.
 pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
-    cloths: Query<(&ClothSolver, &ClothTopology), With<Cloth>>,
+    cloths: Query<(&ClothSolver, &ClothTopology, &ClothParticles), With<Cloth>>,
 ) {
     step.substeps = step.fixed_substeps.unwrap_or_else(|| {
         let needed = cloths
             .iter()
-            .map(|(solver, topology)| step.substeps_of(*solver, topology));
+            .map(|(solver, topology, particles)| step.substeps_of(*solver, topology, particles));
         needed.max().unwrap_or(1)
     });
 }

@@ -23,7 +23,7 @@
 use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Quat, Vec3};
 
-use super::{ClothReaction, ColliderBody};
+use super::{ClothColliders, ClothReaction, ColliderBody};
 use crate::{
     frame::ClothFrame,
     points::Points,
@@ -31,10 +31,15 @@ use crate::{
     stages::Substep,
 };
 
+/// Time in which a cloth forgets a load \[s\].
+const LOADED: f32 = 0.25;
+
 /// The bodies as one cloth has moved them in this step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies {
     pub list: Vec<Proxy>,
+    /// The largest force on them in the last while \[N\].
+    pub load: f32,
 }
 
 /// What a cloth did to a body so far in this step, in world axes.
@@ -58,6 +63,26 @@ impl Bodies {
     /// Whether this cloth touched any.
     pub fn touched(&self) -> bool {
         self.list.iter().any(|proxy| proxy.touched)
+    }
+
+    /// Takes notice of the force in a step of this length \[s\]; an earlier one is forgotten within [`LOADED`].
+    pub fn note_load(&mut self, seconds: f32) {
+        let impulses = self.list.iter().filter(|proxy| proxy.touched);
+        let force = impulses
+            .map(|proxy| proxy.done.impulse.length())
+            .sum::<f32>()
+            / seconds;
+        self.load = (self.load * (1.0 - seconds / LOADED).max(0.0)).max(force);
+        if self.load < f32::MIN_POSITIVE {
+            self.load = 0.0;
+        }
+    }
+
+    /// Whether this cloth touched one in this step that cloth can move.
+    pub fn pushed(&self, colliders: &ClothColliders) -> bool {
+        let pairs = self.list.iter().zip(&colliders.bodies);
+        let mut touched = pairs.filter(|(proxy, _)| proxy.touched);
+        touched.any(|(_, body)| body.inv_mass != Vec3::ZERO)
     }
 
     /// One for each body of the step, and on by the velocity that they have got.
@@ -165,7 +190,38 @@ impl Coupling {
     }
 }
 
+/// What many particles together do to a body in a substep.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pull {
+    /// \[N s\] · substep.
+    impulse: Vec3,
+    /// About the centre of mass \[N m s\] · substep.
+    moment: Vec3,
+    /// Σ of each one's impulse times the body's way against it there.
+    work: f32,
+}
+
+impl Pull {
+    /// An impulse at an arm from the centre of mass, and its work.
+    pub fn add(&mut self, arm: Vec3, impulse: Vec3, work: f32) {
+        self.impulse += impulse;
+        self.moment += arm.cross(impulse);
+        self.work += work;
+    }
+}
+
 impl Struck<'_> {
+    /// The part of a pull that stops the body in the direction it pulls: more would throw it back.
+    pub fn stopped_by(&self, pull: &Pull) -> f32 {
+        let way = pull.impulse.dot(self.body.inv_mass * pull.impulse)
+            + pull.moment.dot(self.body.inv_inertia * pull.moment);
+        if way > 0.0 {
+            (pull.work / way).clamp(0.0, 1.0)
+        } else {
+            1.0
+        }
+    }
+
     /// Where the collider is in the cloth's frame at the start and at the end of the substep, as far as it is known.
     pub fn way(&self, frame: &ClothFrame) -> [Isometry3d; 2] {
         let [from, to] = self.given;
@@ -183,7 +239,7 @@ impl Struck<'_> {
     /// Where a particle is from the body's centre of mass \[m\], given where it was in the world at the start of the substep.
     ///
     /// The arms at the start are those that keep angular momentum: a displacement Δ from x gives a particle x₀ × m Δ/h of it.
-    fn arm(&self, before: Vec3) -> Vec3 {
+    pub fn arm(&self, before: Vec3) -> Vec3 {
         before - (self.center_before + self.proxy.start.0)
     }
 

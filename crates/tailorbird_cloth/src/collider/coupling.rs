@@ -6,7 +6,7 @@ use bevy_math::Vec3;
 
 use super::{
     ClothColliders,
-    bodies::{Coupling, Proxy, Struck},
+    bodies::{Coupling, Proxy, Pull, Struck},
     near::{Around, LEAVING},
     snapshot::MovingCollider,
     stages::combined_friction,
@@ -181,8 +181,10 @@ impl ClothColliders {
                 continue;
             };
             let margin = collider.margin + cloth.material.margin();
+            let [from, to] = struck.way(frame);
             let motion = struck.motion(frame);
-            for coupling in group {
+            let mut pulled = Pull::default();
+            for coupling in &mut *group {
                 let i = coupling.particle;
                 let mut pushed = coupling.share * contacts.pressed.get(i).copied().unwrap_or(0.0);
                 let mut held = coupling.held.max(0.0);
@@ -193,18 +195,24 @@ impl ClothColliders {
                     position.set(i, to);
                     (pushed, held) = (0.0, 0.0);
                 }
-                let before = frame.to_world(path[0]);
+                coupling.held = held * coupling.mass - pushed;
+                coupling.pressed += coupling.held;
+                let point = from.inverse() * path[0];
+                let way = to * point - path[0] - pins.unwrap_or(Vec3::ZERO);
                 let along = frame.vector_to_world(coupling.normal);
-                let inwards = held - pushed / coupling.mass;
-                // What pins pull back of what was too far away before gets no velocity of that.
-                let stopped = pins.map_or(inwards, |pins| {
-                    let way = coupling.normal.dot(path[1] - path[0] - pins) + inwards;
-                    inwards.min(way.max(0.0))
-                });
-                coupling.pressed += inwards * coupling.mass;
-                coupling.held = 0.0;
-                struck.push(before, along * -(stopped * coupling.mass));
-                struck.shift(before, along * -((inwards - stopped) * coupling.mass));
+                pulled.add(
+                    struck.arm(frame.to_world(path[0])),
+                    along * -coupling.held,
+                    coupling.held * coupling.normal.dot(way),
+                );
+            }
+            // What pins pull back of what was too far away before gets no velocity of that.
+            let stopped = pins.map_or(1.0, |_| struck.stopped_by(&pulled));
+            for coupling in group {
+                let before = frame.to_world(previous_position.get(coupling.particle));
+                let pull = frame.vector_to_world(coupling.normal) * -mem::take(&mut coupling.held);
+                struck.push(before, pull * stopped);
+                struck.shift(before, pull * (1.0 - stopped));
             }
             around.bodies.list[body] = proxy;
         }

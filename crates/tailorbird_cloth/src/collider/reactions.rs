@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
 use super::{ClothColliders, ExternalColliders};
-use crate::{cloth::Cloth, particles::ClothParticles};
+use crate::{cloth::Cloth, particles::ClothParticles, step::ClothStep};
 
 /// What cloth did to bodies in the last step: for each [`ColliderBody`](super::ColliderBody) that a cloth touched, after
 /// [`ClothSystems::Simulate`](crate::schedule::ClothSystems::Simulate).
@@ -45,7 +45,7 @@ impl ClothReactions {
 
 /// Adds up what all cloths did to bodies, in the order of the cloths' entities. Where no step was made, nothing was done.
 pub fn gather_reactions(
-    colliders: Res<ClothColliders>,
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
     mut external: ResMut<ExternalColliders>,
     mut reactions: ResMut<ClothReactions>,
     mut order: Local<Vec<Entity>>,
@@ -59,10 +59,15 @@ pub fn gather_reactions(
     let before = list.len();
     list.clear();
     order.clear();
-    let pushed = cloths
-        .iter()
-        .filter(|(_, particles)| particles.contacts.around.bodies.touched());
-    order.extend(pushed.map(|(entity, _)| entity));
+    for (entity, mut particles) in &mut cloths {
+        let bodies = &mut particles.bypass_change_detection().contacts.around.bodies;
+        if bodies.touched() {
+            order.push(entity);
+        }
+        if step.running {
+            bodies.note_load(step.seconds());
+        }
+    }
     order.sort_unstable();
     for entity in &*order {
         let Ok((_, mut particles)) = cloths.get_mut(*entity) else {
