@@ -10,6 +10,7 @@
 //! ```
 
 mod colliders;
+mod wind;
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_color::{Color, palettes::tailwind};
@@ -49,6 +50,9 @@ pub struct ClothGizmos {
     /// The shape of each [`ClothCollider`], without its margin; of a half-space a square of 10 m. What is in
     /// [`ExternalColliders`] is for its engine to draw.
     pub colliders: bool,
+    /// The border of each [`WindZone`], paler where it begins to blow at full strength, and arrows for the air in them and around
+    /// cloths, 4 cm for 1 m/s.
+    pub wind: bool,
 }
 
 impl ClothGizmos {
@@ -56,6 +60,7 @@ impl ClothGizmos {
     fn shows_any(&self) -> bool {
         let no_cloth = Self {
             colliders: self.colliders,
+            wind: self.wind,
             ..Self::default()
         };
         *self != no_cloth
@@ -83,6 +88,9 @@ impl Plugin for ClothDebugPlugin {
                 colliders::draw
                     .after(TransformSystems::Propagate)
                     .run_if(shows_colliders),
+                wind::draw
+                    .after(TransformSystems::Propagate)
+                    .run_if(shows_wind),
             )
                 .before(GizmoMeshSystems),
         );
@@ -95,6 +103,10 @@ fn shows_any(store: Res<GizmoConfigStore>) -> bool {
 
 fn shows_colliders(store: Res<GizmoConfigStore>) -> bool {
     store.config::<ClothGizmos>().1.colliders
+}
+
+fn shows_wind(store: Res<GizmoConfigStore>) -> bool {
+    store.config::<ClothGizmos>().1.wind
 }
 
 fn draw(

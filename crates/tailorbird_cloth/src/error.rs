@@ -329,6 +329,8 @@ pub enum ErrorSource {
     Transform,
     /// [`ClothCollider`](crate::collider::ClothCollider).
     Collider,
+    /// [`WindZone`](crate::wind::WindZone).
+    Wind,
     /// [`ClothForces`](crate::forces::ClothForces).
     Forces,
     /// [`ClothInertia`](crate::inertia::ClothInertia).
@@ -339,7 +341,7 @@ pub enum ErrorSource {
     State,
 }
 
-/// What is wrong with this cloth or collider at present; empty when all is well.
+/// What is wrong with this cloth, collider or zone at present; empty when all is well.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothStatus {

@@ -95,6 +95,6 @@ pub mod prelude {
         topology::{ClothTopology, report::MeshReport},
         validate::ClothReset,
         weights::ClothWeights,
-        wind::{Gusts, Wind, WindModel},
+        wind::{BlowingWind, Gusts, Turbulence, Wind, WindModel, WindShape, WindZone},
     };
 }

@@ -38,6 +38,9 @@ pub struct ClothParticles {
     /// Position at the start of the step \[m\], to interpolate from, and to fall back to.
     #[reflect(ignore)]
     pub(crate) step_position: Points,
+    /// `previous_position` moved along with air that differs from place to place \[m\]; scratch of a step.
+    #[reflect(ignore)]
+    pub(crate) previous_with_air: Points,
     /// Acceleration by wind and forces during this step [m/s²]; empty where there is none.
     #[reflect(ignore)]
     pub(crate) acceleration: Points,
@@ -52,6 +55,9 @@ pub struct ClothParticles {
     /// Contacts in this substep, noted before the constraints are solved.
     #[reflect(ignore)]
     pub(crate) contacts: Contacts,
+    /// Mean places of runs of particles in the last while \[m\], in the cloth's frame.
+    #[reflect(ignore)]
+    pub(crate) calm: Vec<Vec3>,
     /// Multipliers of the constraints; scratch of a substep.
     #[reflect(ignore)]
     pub(crate) lambda: Vec<f32>,
@@ -129,6 +135,7 @@ impl ClothParticles {
             &self.lost_displacement,
             &self.step_position,
             &self.acceleration,
+            &self.previous_with_air,
             &self.contacts.normal,
         ];
         let lists = [&self.mass, &self.lambda];
@@ -138,6 +145,7 @@ impl ClothParticles {
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.pins)
             + heap(&self.pulled)
+            + heap(&self.calm)
             + self.contacts.around.memory_bytes()
             + heap(&self.attached)
             + heap(&self.limited)

@@ -29,12 +29,12 @@ use crate::{
     prelude::*,
     runner::{OwnStages, simulate_cloths},
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
-    sleep::{rest_cloths, wake_cloths},
+    sleep::{rest_cloths, settle_cloths, wake_cloths},
     solver::{calm_knots, solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
     validate::guard_finite,
-    wind::{BlowingWind, apply_wind, prepare_wind},
+    wind::{apply_wind, prepare_wind},
 };
 
 /// Simulates cloth. Needs `TimePlugin` and `TaskPoolPlugin` (both part of Bevy's `MinimalPlugins`), nothing else.
@@ -136,7 +136,7 @@ impl Plugin for ClothPlugin {
             Writeback,
             (
                 (
-                    guard_finite.run_if(step_runs),
+                    (guard_finite, settle_cloths).chain().run_if(step_runs),
                     recompute_normals,
                     update_bounds,
                     rest_cloths.run_if(step_runs),
@@ -240,5 +240,6 @@ fn register_types(app: &mut App) {
         .register_type::<ClothSettings>()
         .register_type::<ClothStep>()
         .register_type::<ClothStepTime>()
-        .register_type::<Wind>();
+        .register_type::<Wind>()
+        .register_type::<WindZone>();
 }

@@ -71,11 +71,12 @@ pub(crate) fn simulate_cloths(
     let simulate = |cloth: &mut ClothStagesItem, crew: Crew| {
         cloth.particles.begin_step();
         wind.blow(&step, crew, cloth);
-        let count = step.substeps_of(*cloth.solver, cloth.topology);
+        let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
         for index in 0..count {
             cloth.substep(&step.nth_of(index, count, crew), &colliders);
         }
         cloth.guard(&commands);
+        cloth.settle(&step, &colliders);
         cloth.recompute_normals(step.level(), crew);
         cloth.update_bounds(step.level());
         cloth.rest(&step, &wind, &colliders);

@@ -1,4 +1,4 @@
-//! Cloth at rest sleeps: it costs nothing until something happens to it.
+//! Cloth at rest settles and then sleeps: it costs nothing until something happens to it.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -24,11 +24,15 @@ use crate::{
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
     topology::ClothTopology,
-    wind::{BlowingWind, WindModel},
+    wind::BlowingWind,
 };
 
-/// When a cloth falls asleep: after it has been at rest for some time. It is at rest when no more than 1 % of it is
-/// faster than [`speed`](Self::speed), and nothing ten times as fast, in the mean of 16 particles side by side.
+/// When a cloth falls asleep: after it has been at rest for some time. It is at rest when it stays where it has been on average in the
+/// last quarter of a second, but for the way that [`speed`](Self::speed) makes in that time (root of the mean square of all runs of 16
+/// particles side by side, and none five times as far): what drifts or swings does not rest, what trembles on the spot does.
+///
+/// What has been at rest for half a second settles: friction within the fabric takes what is left of its motion, within half a second
+/// more, as long as nothing happens that would wake it.
 ///
 /// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
 /// transform, its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
@@ -39,9 +43,9 @@ use crate::{
 pub struct ClothSleep {
     /// Whether the cloth falls asleep at all.
     pub enabled: bool,
-    /// What is slower rests [m/s].
+    /// What is slower rests [m/s]; with 0, nothing settles either.
     pub speed: f32,
-    /// How long the cloth has to be at rest \[s\].
+    /// How long the cloth has to be at rest \[s\]; at least half a second.
     pub seconds: f32,
 }
 
@@ -56,7 +60,7 @@ impl Default for ClothSleep {
 }
 
 impl ClothSleep {
-    /// A cloth that is always awake.
+    /// A cloth that is always awake. It settles all the same.
     pub fn never() -> Self {
         Self {
             enabled: false,
@@ -89,16 +93,11 @@ impl ClothSleep {
 #[reflect(Component, Default)]
 pub struct ClothRest {
     seconds: f32,
+    /// Since when it sleeps.
+    asleep: Option<u64>,
+    /// What it settles or sleeps in.
     #[reflect(ignore)]
-    asleep: Option<Asleep>,
-}
-
-/// What a cloth fell asleep in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Asleep {
-    /// The step.
-    step: u64,
-    around: Around,
+    around: Option<Around>,
 }
 
 /// What acts on a cloth from outside.
@@ -107,7 +106,7 @@ struct Around {
     gravity: Vec3,
     substeps: Option<u32>,
     iterations: u32,
-    air: (Vec3, WindModel, f32),
+    air: u64,
     /// Of the colliders that touch the cloth's box.
     colliders: u64,
 }
@@ -125,7 +124,7 @@ impl ClothRest {
 
     /// The step after which the cloth fell asleep, where it sleeps.
     pub fn asleep_since(&self) -> Option<u64> {
-        self.asleep.map(|asleep| asleep.step)
+        self.asleep
     }
 
     /// Wakes the cloth, and makes it wait again before it falls asleep.
@@ -136,6 +135,21 @@ impl ClothRest {
 
 /// How many particles that lie side by side are looked at together.
 const RUN: usize = 16;
+
+/// Time that places are averaged over \[s\].
+const MEAN: f32 = 0.25;
+
+/// After this time at rest a cloth begins to settle \[s\].
+const CALM: f32 = 0.5;
+
+/// How many times as fast as the whole a run may be at rest.
+const FASTEST: f32 = 5.0;
+
+/// After this time at rest it has settled \[s\].
+const SETTLED: f32 = 1.0;
+
+/// The part of its motion in a step that a settled cloth keeps: the rest is friction within the fabric.
+const KEPT: f32 = 0.02;
 
 /// Room around a cloth in which a collider wakes it \[m\].
 const ROOM: f32 = 0.02;
@@ -157,7 +171,7 @@ fn around(
         gravity: step.gravity(),
         substeps: step.fixed_substeps,
         iterations: step.iterations(),
-        air: wind.kind(),
+        air: wind.kind(frame, bounds),
         colliders: hasher.finish(),
     }
 }
@@ -210,17 +224,28 @@ pub fn wake_cloths(
             || frame.is_moving()
             || attached.is_disturbed()
             || motion.is_some_and(MotionState::is_disturbed);
-        let other = |asleep: Asleep| {
-            asleep.around != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
+        let other = |known: Around| {
+            known != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
         };
-        let disturbed = changed || pulled || rest.asleep.is_some_and(other);
+        let disturbed = changed || pulled || rest.around.is_some_and(other);
         if disturbed && *rest != ClothRest::default() {
             rest.wake();
         }
     }
 }
 
-/// Measures how long the cloths have been at rest, and lets them fall asleep.
+/// Measures how long the cloths have been at rest, and lets them settle.
+pub fn settle_cloths(
+    step: Res<ClothStep>,
+    colliders: Res<ClothColliders>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
+        cloth.settle(&step, &colliders);
+    });
+}
+
+/// Lets the cloths fall asleep that have been at rest for long enough.
 pub fn rest_cloths(
     step: Res<ClothStep>,
     wind: Res<BlowingWind>,
@@ -233,6 +258,23 @@ pub fn rest_cloths(
 }
 
 impl ClothStagesItem<'_, '_> {
+    /// What [`settle_cloths`] does for one cloth.
+    pub(crate) fn settle(&mut self, step: &ClothStep, colliders: &ClothColliders) {
+        if self.particles.is_empty() || !self.sleep.errors().is_empty() {
+            return;
+        }
+        let seconds = step.seconds();
+        let carries = self.particles.contacts.around.bodies.pushed(colliders);
+        let still = self.particles.is_at_rest(self.sleep.speed, seconds);
+        // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
+        if carries || !(still || self.rest.around.is_some()) {
+            self.rest.set_if_neq(ClothRest::default());
+            return;
+        }
+        self.rest.seconds += seconds;
+        self.particles.slow_down(part_kept(self.rest.seconds));
+    }
+
     /// What [`rest_cloths`] does for one cloth.
     pub(crate) fn rest(
         &mut self,
@@ -240,65 +282,88 @@ impl ClothStagesItem<'_, '_> {
         wind: &BlowingWind,
         colliders: &ClothColliders,
     ) {
-        let sleep = self.sleep;
-        if !sleep.enabled || self.particles.is_empty() || !sleep.errors().is_empty() {
+        if self.rest.seconds < CALM {
             return;
         }
-        let seconds = step.seconds();
-        if !self.particles.is_at_rest(sleep.speed * seconds) {
-            self.rest.set_if_neq(ClothRest::default());
-            return;
-        }
-        self.rest.seconds += seconds;
-        if self.rest.seconds >= sleep.seconds {
+        let place = (&*self.frame, &*self.bounds);
+        self.rest.around = Some(around(
+            step,
+            wind,
+            colliders,
+            place,
+            self.layers,
+            self.material,
+        ));
+        if self.sleep.enabled && self.rest.seconds >= self.sleep.seconds {
             self.particles.stop();
-            let around = around(
-                step,
-                wind,
-                colliders,
-                (&self.frame, &self.bounds),
-                self.layers,
-                self.material,
-            );
-            self.rest.asleep = Some(Asleep {
-                step: step.steps(),
-                around,
-            });
+            self.rest.asleep = Some(step.steps());
         }
     }
 }
 
+/// The part of its motion in a step that a cloth keeps which has been at rest for so long \[s\].
+fn part_kept(seconds: f32) -> f32 {
+    let x = (seconds - CALM) / (SETTLED - CALM);
+    1.0 - x.clamp(0.0, 1.0) * (1.0 - KEPT)
+}
+
 impl ClothParticles {
-    /// Whether at most one in a hundred runs of particles moved further in this step than `distance` \[m\], and none ten times
-    /// as far, in the mean of each run: single particles that tremble in a crease keep nobody awake.
-    fn is_at_rest(&self, distance: f32) -> bool {
-        let (slow, fast) = (distance * distance, 100.0 * distance * distance);
+    /// Whether runs of particles are as near to their mean place of the last while as if they went at `speed` [m/s], root of the mean
+    /// square, and none [`FASTEST`] times as far. To be asked once in each step.
+    ///
+    /// A crease that trembles stays where it is, however fast; what swings does not.
+    fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
         let runs = self.len().div_ceil(RUN);
-        let moved = |run: usize| {
-            let run = run * RUN..((run + 1) * RUN).min(self.len());
-            let mean = |now: &[f32], before: &[f32]| {
-                let ways = now[run.clone()].iter().zip(&before[run.clone()]);
-                ways.map(|(to, from)| to - from).sum::<f32>() / run.len() as f32
-            };
-            let (now, before) = (&self.position, &self.step_position);
-            Vec3::new(
-                mean(&now.x, &before.x),
-                mean(&now.y, &before.y),
-                mean(&now.z, &before.z),
-            )
+        let known = self.calm.len() == runs;
+        self.calm.resize(runs, Vec3::ZERO);
+        let part = if known {
+            seconds / (MEAN + seconds)
+        } else {
+            1.0
         };
-        let most = runs / 100;
-        let mut count = 0;
-        for run in 0..runs {
-            let q = moved(run).length_squared();
-            if q > slow {
-                count += 1;
-                if count > most || q > fast {
-                    return false;
-                }
-            }
+        let (mut sum, mut most) = (0.0, 0.0_f32);
+        for (run, calm) in self.calm.iter_mut().enumerate() {
+            let run = run * RUN..((run + 1) * RUN).min(self.inv_mass.len());
+            let mean = |list: &[f32]| list[run.clone()].iter().sum::<f32>() / run.len() as f32;
+            let position = &self.position;
+            let place = Vec3::new(mean(&position.x), mean(&position.y), mean(&position.z));
+            let away = (place - *calm).length_squared();
+            *calm += part * (place - *calm);
+            sum += away;
+            most = most.max(away);
         }
-        true
+        let near = (speed * MEAN).powi(2);
+        known && sum <= near * runs as f32 && most <= FASTEST * FASTEST * near
+    }
+
+    /// Takes all but a part of what it moved in this step away, and of its velocity.
+    fn slow_down(&mut self, kept: f32) {
+        if kept == 1.0 {
+            return;
+        }
+        let w = &self.inv_mass;
+        let axis = |now: &mut [f32], previous: &mut [f32], start: &[f32], lost: &mut [f32]| {
+            let lists = now
+                .iter_mut()
+                .zip(previous)
+                .zip(start)
+                .zip(lost)
+                .zip(w.iter());
+            for ((((now, previous), start), lost), w) in lists {
+                if *w == 0.0 {
+                    continue;
+                }
+                let way = *now - *previous;
+                *now = *start + kept * (*now - *start);
+                *previous = *now - kept * way;
+                *lost = 0.0;
+            }
+        };
+        let (p, q) = (&mut self.position, &mut self.previous_position);
+        let (s, l) = (&self.step_position, &mut self.lost_displacement);
+        axis(&mut p.x, &mut q.x, &s.x, &mut l.x);
+        axis(&mut p.y, &mut q.y, &s.y, &mut l.y);
+        axis(&mut p.z, &mut q.z, &s.z, &mut l.z);
     }
 
     /// Takes all velocity away, also for interpolation.

@@ -2,6 +2,7 @@
 
 pub mod aerodynamics;
 pub(crate) mod ball;
+pub(crate) mod breeze;
 pub(crate) mod capsule;
 pub(crate) mod cells;
 pub mod contact;

@@ -1,0 +1,381 @@
+//! The air during a step: what blows, and what it does to cloths.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use bevy_ecs::prelude::*;
+use bevy_math::{DVec3, Isometry3d, Vec3};
+use bevy_transform::helper::TransformHelper;
+use tracing::error;
+
+use super::{
+    Turbulence, Wind, WindModel, WindShape, WindZone,
+    turbulence::{WAVES, Wave, sine},
+    zone::{is_whole_in, strength},
+};
+use crate::{
+    bounds::ClothBounds,
+    cloth::Cloth,
+    crew::Crew,
+    error::{ClothStatus, ErrorSource},
+    frame::{ClothFrame, split},
+    particles::ClothParticles,
+    points::Points,
+    solver::kernels::{
+        aerodynamics::{self, Air, AirSheet},
+        breeze::{self, Breeze},
+        lanes::SharedPoints,
+    },
+    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    step::ClothStep,
+};
+
+/// The air in this step: the [`Wind`] and all [`WindZone`]s. Written by [`prepare_wind`] alone.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct BlowingWind {
+    /// The last valid one.
+    valid: Wind,
+    /// First the wind, then the zones in the order of their entities.
+    sources: Vec<Source>,
+}
+
+/// What blows somewhere.
+#[derive(Clone, Debug)]
+struct Source {
+    /// The zone's.
+    entity: Option<Entity>,
+    shape: WindShape,
+    falloff: f32,
+    /// Where it is in the world.
+    at: Isometry3d,
+    /// In world axes [m/s].
+    velocity: Vec3,
+    turbulence: Turbulence,
+    /// Of its turbulence, in its own axes; amplitudes are 0 where there is none.
+    waves: [Wave; WAVES],
+    /// How far it has carried its eddies, in its own axes \[m\].
+    drift: DVec3,
+}
+
+impl Source {
+    fn new(entity: Option<Entity>) -> Self {
+        Self {
+            entity,
+            shape: WindShape::Everywhere,
+            falloff: 0.0,
+            at: Isometry3d::IDENTITY,
+            velocity: Vec3::ZERO,
+            turbulence: Turbulence::default(),
+            waves: [Wave::default(); WAVES],
+            drift: DVec3::ZERO,
+        }
+    }
+
+    fn swirl(&mut self, turbulence: Turbulence, mean: Vec3, step: &ClothStep) {
+        self.turbulence = turbulence;
+        if turbulence.is_some() {
+            self.waves = turbulence.waves(step.elapsed(), self.drift);
+        }
+        self.drift += mean.as_dvec3() * f64::from(step.seconds());
+    }
+
+    /// The velocity at a place in the world, in world axes [m/s].
+    fn velocity_at(&self, point: Vec3) -> Vec3 {
+        let local = self.at.inverse() * point;
+        let strength = strength(self.shape.depth(local), self.falloff);
+        if strength == 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut swirl = Vec3::ZERO;
+        if self.turbulence.is_some() {
+            for wave in &self.waves {
+                swirl += wave.amplitude * sine(wave.turns.dot(local) + wave.phase);
+            }
+        }
+        strength * (self.velocity + self.at.rotation * swirl)
+    }
+
+    fn hash(&self, hasher: &mut impl Hasher) {
+        let numbers = |hasher: &mut _, list: &[f32]| {
+            for number in list {
+                number.to_bits().hash(hasher);
+            }
+        };
+        numbers(hasher, &self.velocity.to_array());
+        numbers(hasher, &Vec3::from(self.at.translation).to_array());
+        numbers(hasher, &self.at.rotation.to_array());
+        let size = match self.shape {
+            WindShape::Everywhere => Vec3::ZERO,
+            WindShape::Cuboid { half_size } => half_size,
+            WindShape::Sphere { radius } => Vec3::splat(-radius),
+        };
+        numbers(hasher, &size.to_array());
+        let Turbulence { speed, scale, seed } = self.turbulence;
+        numbers(hasher, &[self.falloff, speed, scale]);
+        seed.hash(hasher);
+        if self.turbulence.is_some() {
+            numbers(hasher, &self.waves.map(|wave| wave.phase));
+        }
+    }
+}
+
+/// Reads how the wind blows in this step.
+///
+/// An invalid wind is logged once, and the last valid one blows on. A zone that is wrong, or whose transform is not finite, is reported and does
+/// not blow.
+pub fn prepare_wind(
+    step: Res<ClothStep>,
+    wind: Res<Wind>,
+    helper: TransformHelper,
+    mut blowing: ResMut<BlowingWind>,
+    mut zones: Query<(Entity, Ref<WindZone>, &mut ClothStatus)>,
+    commands: ParallelCommands,
+) {
+    if wind.is_changed() {
+        let errors = wind.errors();
+        for kind in &errors {
+            error!("{kind}; the last valid wind blows on");
+        }
+        if errors.is_empty() {
+            blowing.valid.clone_from(&wind);
+        }
+    }
+    let BlowingWind { valid, sources } = &mut *blowing;
+    if sources.is_empty() {
+        sources.push(Source::new(None));
+    }
+    sources[0].velocity = valid.velocity_at(step.elapsed());
+    sources[0].swirl(valid.turbulence, valid.velocity, &step);
+    let mut blows = 1;
+    for (entity, zone, mut status) in &mut zones {
+        if zone.is_changed() {
+            let errors = zone.errors();
+            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Wind, errors);
+        }
+        let place = helper.compute_global_transform(entity);
+        let Ok(place) = place.as_ref().map(split) else {
+            continue;
+        };
+        let error = place.as_ref().err().cloned();
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ErrorSource::Transform,
+            error,
+        );
+        let Ok((at, scale)) = place else { continue };
+        if !status.is_ok_for(ErrorSource::Wind) {
+            continue;
+        }
+        let known = sources[blows..]
+            .iter()
+            .position(|source| source.entity == Some(entity));
+        let index = known.map_or(sources.len(), |k| blows + k);
+        if known.is_none() {
+            sources.push(Source::new(Some(entity)));
+        }
+        sources.swap(blows, index);
+        let source = &mut sources[blows];
+        let gusty = zone.gusts.vary(zone.velocity, step.elapsed());
+        source.shape = zone.shape.scaled(scale);
+        source.falloff = zone.falloff;
+        source.at = at;
+        source.velocity = at.rotation * gusty;
+        source.swirl(zone.turbulence, zone.velocity, &step);
+        blows += 1;
+    }
+    sources.truncate(blows);
+    sources.sort_unstable_by_key(|source| source.entity);
+}
+
+/// Adds the acceleration by the wind, once per step.
+pub fn apply_wind(
+    step: Res<ClothStep>,
+    wind: Res<BlowingWind>,
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    for_each_awake(&step, &mut cloths, &|mut cloth| {
+        wind.blow(&step, Crew::ALONE, &mut cloth);
+    });
+}
+
+/// The ball around a cloth's box: middle and radius in the world \[m\].
+fn ball(frame: &ClothFrame, bounds: &ClothBounds) -> (Vec3, f32) {
+    let middle = 0.5 * (bounds.min + bounds.max);
+    (frame.to_world(middle), bounds.max.distance(middle))
+}
+
+impl BlowingWind {
+    /// The velocity of the air at a place in the world, in world axes [m/s]: for whatever else the wind moves.
+    pub fn velocity_at(&self, point: Vec3) -> Vec3 {
+        self.sources
+            .iter()
+            .map(|source| source.velocity_at(point))
+            .sum()
+    }
+
+    /// The sources that reach a ball in the world, and whether they do so in the same way everywhere in it.
+    fn reaching(&self, ball: (Vec3, f32)) -> impl Iterator<Item = (&Source, bool)> {
+        self.sources.iter().filter_map(move |source| {
+            let whole = is_whole_in(source.shape, source.falloff, source.at, ball)?;
+            Some((source, whole))
+        })
+    }
+
+    /// What tells the air around a cloth from another.
+    pub(crate) fn kind(&self, frame: &ClothFrame, bounds: &ClothBounds) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.valid.model.hash(&mut hasher);
+        self.valid.air_density.to_bits().hash(&mut hasher);
+        for (source, _) in self.reaching(ball(frame, bounds)) {
+            source.hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+
+    /// What [`apply_wind`] does to one cloth.
+    pub(crate) fn blow(&self, step: &ClothStep, crew: Crew, cloth: &mut ClothStagesItem) {
+        let (model, density) = (self.valid.model, self.valid.air_density);
+        let (topology, material, frame) = (cloth.topology, cloth.material, &*cloth.frame);
+        if cloth.particles.is_empty() || !material.errors().is_empty() {
+            return;
+        }
+        if density == 0.0 && model == WindModel::Aerodynamic {
+            return;
+        }
+        let ball = ball(frame, &cloth.bounds);
+        let mut velocity = Vec3::ZERO;
+        let mut varies = false;
+        for (source, whole) in self.reaching(ball) {
+            if whole && !source.turbulence.is_some() {
+                velocity += source.velocity;
+            } else {
+                varies = true;
+            }
+        }
+        if model == WindModel::Classic {
+            velocity = self.velocity_at(ball.0);
+            varies = false;
+            if velocity == Vec3::ZERO {
+                return;
+            }
+        }
+        let level = step.level();
+        let wind = frame.vector_to_frame(velocity);
+        cloth.particles.accelerations();
+        let particles = &mut *cloth.particles;
+        let mut per_second = if particles.substep_seconds > 0.0 {
+            particles.substep_seconds.recip()
+        } else {
+            0.0
+        };
+        if varies {
+            // Velocities are ways since the substep before: the air's own way is added to where a particle was.
+            if per_second == 0.0 {
+                per_second = step.seconds().recip();
+            }
+            let uneven = |(source, whole): &(&Source, bool)| !whole || source.turbulence.is_some();
+            let breezes = self.reaching(ball).filter(uneven);
+            let breezes = breezes.map(|(source, whole)| source.breeze(frame, whole));
+            let (position, previous) = (&particles.position, &particles.previous_position);
+            let with_air = &mut particles.previous_with_air;
+            if with_air.len() != previous.len() {
+                *with_air = Points::zeroed(previous.len());
+            }
+            with_air.copy_from(previous);
+            let out = SharedPoints::new(with_air);
+            let seconds = per_second.recip();
+            for breeze in breezes {
+                crew.share(0..position.len(), |range| {
+                    breeze::add(level, &breeze, seconds, position, out, range);
+                });
+            }
+        }
+        let ClothParticles {
+            position,
+            previous_position,
+            acceleration,
+            inv_mass,
+            previous_with_air,
+            ..
+        } = particles;
+        let previous = if varies {
+            &*previous_with_air
+        } else {
+            &*previous_position
+        };
+        let air = Air {
+            wind,
+            density,
+            areal_density: material.areal_density,
+            drag: material.drag,
+            lift: material.lift,
+            seconds: step.seconds(),
+        };
+        // The cells of a mesh are cut in its own way.
+        if let (Some(lattice), Some(_)) = (&topology.lattice, topology.grid) {
+            let sheet = AirSheet {
+                lattice,
+                position,
+                previous,
+                inv_mass,
+                acceleration: SharedPoints::new(acceleration),
+            };
+            crew.share(0..lattice.rows as usize, |rows| match model {
+                WindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
+                WindModel::Aerodynamic => {
+                    aerodynamics::drag_and_lift_on_sheet(level, sheet, air, per_second, rows);
+                }
+            });
+            return;
+        }
+        let triangles = &topology.triangles;
+        match model {
+            WindModel::Classic => {
+                aerodynamics::classic(triangles, wind, position, inv_mass, acceleration);
+            }
+            WindModel::Aerodynamic => {
+                aerodynamics::drag_and_lift(
+                    triangles,
+                    &topology.triangle_areas,
+                    air,
+                    position,
+                    previous,
+                    per_second,
+                    inv_mass,
+                    acceleration,
+                );
+            }
+        }
+    }
+}
+
+impl Source {
+    /// The same in the axes of a cloth's frame; at full strength everywhere where it is `whole`.
+    fn breeze(&self, frame: &ClothFrame, whole: bool) -> Breeze {
+        let frame = frame.isometry();
+        let to_own = self.at.inverse() * frame;
+        let back = to_own.rotation.inverse();
+        let origin = Vec3::from(to_own.translation).as_dvec3();
+        let mut waves = self.waves;
+        for wave in &mut waves {
+            let phase = wave.turns.as_dvec3().dot(origin) + f64::from(wave.phase);
+            *wave = Wave {
+                amplitude: back * wave.amplitude,
+                turns: back * wave.turns,
+                phase: phase.rem_euclid(1.0) as f32,
+            };
+        }
+        Breeze {
+            velocity: frame.rotation.inverse() * self.velocity,
+            waves: self.turbulence.is_some().then_some(waves),
+            shape: if whole {
+                WindShape::Everywhere
+            } else {
+                self.shape
+            },
+            falloff: self.falloff,
+            to_own,
+        }
+    }
+}

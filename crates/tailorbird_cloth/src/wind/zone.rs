@@ -1,0 +1,188 @@
+//! Wind in a part of the world.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_reflect::prelude::*;
+use bevy_transform::components::Transform;
+
+use super::{Gusts, Turbulence};
+use crate::error::{ClothErrorKind, ClothStatus};
+
+/// Air that moves in a part of the world, which is added to [`Wind`](super::Wind) and to other zones there. It moves, turns and grows with its
+/// entity, and `velocity` and turbulence turn with it.
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_math::Vec3;
+/// # use bevy_transform::components::Transform;
+/// # use tailorbird_cloth::prelude::*;
+/// fn fan(mut commands: Commands) {
+///     commands.spawn((
+///         WindZone {
+///             falloff: 0.5,
+///             turbulence: Turbulence { speed: 1.0, scale: 0.5, ..Turbulence::default() },
+///             ..WindZone::cuboid(Vec3::new(1.0, 1.0, 3.0), Vec3::Z * 6.0)
+///         },
+///         Transform::from_xyz(0.0, 1.0, -3.0),
+///     ));
+/// }
+/// ```
+///
+/// One that is wrong is reported in [`ClothStatus`] and blows not.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+#[require(Transform, ClothStatus)]
+pub struct WindZone {
+    /// Where it blows.
+    pub shape: WindShape,
+    /// Mean velocity of the air, along the entity's axes [m/s].
+    pub velocity: Vec3,
+    /// Width inside the border over which the wind rises from nothing to its full speed \[m\]; 0 is at once. Nothing outside moves.
+    pub falloff: f32,
+    /// How it varies.
+    pub gusts: Gusts,
+    /// How it swirls.
+    pub turbulence: Turbulence,
+}
+
+/// Where a [`WindZone`] blows, in the entity's axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+pub enum WindShape {
+    /// In the whole world.
+    #[default]
+    Everywhere,
+    /// In a box around the entity.
+    Cuboid {
+        /// Half its sides \[m\].
+        half_size: Vec3,
+    },
+    /// In a sphere around the entity.
+    Sphere {
+        /// \[m\]
+        radius: f32,
+    },
+}
+
+impl Default for WindZone {
+    fn default() -> Self {
+        Self {
+            shape: WindShape::Everywhere,
+            velocity: Vec3::ZERO,
+            falloff: 0.0,
+            gusts: Gusts::default(),
+            turbulence: Turbulence::default(),
+        }
+    }
+}
+
+impl WindZone {
+    /// A steady wind in the whole world [m/s].
+    pub fn everywhere(velocity: Vec3) -> Self {
+        Self {
+            velocity,
+            ..Self::default()
+        }
+    }
+
+    /// A steady wind in a box with these half sides \[m\] [m/s].
+    pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
+        Self {
+            shape: WindShape::Cuboid { half_size },
+            ..Self::everywhere(velocity)
+        }
+    }
+
+    /// A steady wind in a sphere of this radius \[m\] [m/s].
+    pub fn sphere(radius: f32, velocity: Vec3) -> Self {
+        Self {
+            shape: WindShape::Sphere { radius },
+            ..Self::everywhere(velocity)
+        }
+    }
+
+    /// What is wrong with this zone.
+    pub fn errors(&self) -> Vec<ClothErrorKind> {
+        let positive = |v: f32| v > 0.0 && v.is_finite();
+        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
+        let size =
+            |field, value| ClothErrorKind::number(field, value, positive, "above 0 and finite [m]");
+        let shape = match self.shape {
+            WindShape::Everywhere => None,
+            WindShape::Cuboid { half_size } => {
+                let least = half_size.min_element();
+                let most = half_size.max_element();
+                size(
+                    "WindZone.shape.half_size",
+                    if most.is_finite() { least } else { most },
+                )
+            }
+            WindShape::Sphere { radius } => size("WindZone.shape.radius", radius),
+        };
+        let falloff = ClothErrorKind::number(
+            "WindZone.falloff",
+            self.falloff,
+            not_negative,
+            "at least 0 and finite [m]",
+        );
+        shape
+            .into_iter()
+            .chain(ClothErrorKind::vector("WindZone.velocity", self.velocity))
+            .chain(falloff)
+            .chain(
+                self.gusts
+                    .errors(["WindZone.gusts.strength", "WindZone.gusts.period"]),
+            )
+            .chain(
+                self.turbulence
+                    .errors(["WindZone.turbulence.speed", "WindZone.turbulence.scale"]),
+            )
+            .collect()
+    }
+}
+
+impl WindShape {
+    /// As large as an entity of this scale makes it.
+    pub(super) fn scaled(self, scale: Vec3) -> Self {
+        let scale = scale.abs();
+        match self {
+            Self::Everywhere => self,
+            Self::Cuboid { half_size } => Self::Cuboid {
+                half_size: half_size * scale,
+            },
+            Self::Sphere { radius } => Self::Sphere {
+                radius: radius * scale.max_element(),
+            },
+        }
+    }
+
+    /// How far a point in the shape's axes is inside its border \[m\]; negative outside.
+    pub(super) fn depth(self, point: Vec3) -> f32 {
+        match self {
+            Self::Everywhere => f32::INFINITY,
+            Self::Cuboid { half_size } => (half_size - point.abs()).min_element(),
+            Self::Sphere { radius } => radius - point.length(),
+        }
+    }
+}
+
+/// How strongly a wind blows that rises over `falloff` \[m\] at a depth inside its border: 0 to 1, without edges.
+pub(super) fn strength(depth: f32, falloff: f32) -> f32 {
+    if falloff > 0.0 {
+        let t = (depth / falloff).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    } else {
+        f32::from(u8::from(depth >= 0.0))
+    }
+}
+
+/// How a wind of this shape meets a ball: not at all (`None`), in the same way everywhere, or not.
+pub(super) fn is_whole_in(
+    shape: WindShape,
+    falloff: f32,
+    at: Isometry3d,
+    (center, radius): (Vec3, f32),
+) -> Option<bool> {
+    let depth = shape.depth(at.inverse() * center);
+    // Outside a corner of a box this is less than the distance: it may count a ball as met that is not.
+    (depth > -radius).then_some(depth - radius >= falloff)
+}
