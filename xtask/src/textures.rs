@@ -10,10 +10,10 @@ use image::{
 use crate::fabric::{self, Fabric, Texel};
 
 /// Pixels along each side of a texture.
-const SIZE: usize = 512;
+const SIZE: usize = 1024;
 
 /// Samples along each side of a pixel.
-const SAMPLES: usize = 3;
+const SAMPLES: usize = 2;
 
 /// How much flatter than the yarns the normals are, so that light on them does not flicker from afar \[-\].
 const RELIEF: f32 = 0.7;
@@ -25,26 +25,35 @@ const RELIEF: f32 = 0.7;
 /// When a file cannot be written.
 pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
-    for (name, fabric) in [("cotton", fabric::cotton()), ("denim", fabric::denim())] {
-        let texels = sample(&fabric);
+    for (name, fabric) in fabric::all() {
+        let texels = sample(&*fabric);
+        let file = |kind: &str| folder.join(format!("{name}_{kind}.png"));
+        if texels.iter().all(|texel| texel.cover == 1.0) {
+            save(
+                &file("albedo"),
+                ExtendedColorType::Rgb8,
+                texels.iter().map(albedo),
+            )?;
+        } else {
+            let with_holes = texels.iter().map(|texel| {
+                let [r, g, b] = albedo(texel);
+                [r, g, b, byte(texel.cover)]
+            });
+            save(&file("albedo"), ExtendedColorType::Rgba8, with_holes)?;
+        }
+        let kind = ExtendedColorType::Rgb8;
         save(
-            &folder.join(format!("{name}_albedo.png")),
-            texels.iter().map(albedo),
-        )?;
-        save(
-            &folder.join(format!("{name}_metallic_roughness.png")),
+            &file("metallic_roughness"),
+            kind,
             texels.iter().map(metallic_roughness),
         )?;
-        save(
-            &folder.join(format!("{name}_normal.png")),
-            normals(&texels, fabric.yarns),
-        )?;
+        save(&file("normal"), kind, normals(&texels, fabric.units()))?;
     }
     Ok(())
 }
 
 /// The mean of the samples of each pixel, row by row from the top.
-fn sample(fabric: &Fabric) -> Vec<Texel> {
+fn sample(fabric: &dyn Fabric) -> Vec<Texel> {
     let place = |pixel: usize, sample: usize| {
         (pixel as f32 + (sample as f32 + 0.5) / SAMPLES as f32) / SIZE as f32
     };
@@ -59,6 +68,8 @@ fn sample(fabric: &Fabric) -> Vec<Texel> {
             );
             mean.height += weight * texel.height;
             mean.openness += weight * texel.openness;
+            mean.roughness += weight * texel.roughness;
+            mean.cover += weight * texel.cover;
             for (mean, color) in mean.color.iter_mut().zip(texel.color) {
                 *mean += weight * color;
             }
@@ -71,27 +82,28 @@ fn sample(fabric: &Fabric) -> Vec<Texel> {
 /// sRGB colour, darker in the gaps: they are too small for a renderer's own shadows.
 fn albedo(texel: &Texel) -> [u8; 3] {
     let shade = 0.5 + 0.5 * texel.openness;
-    texel.color.map(|color| byte(srgb(color * shade)))
+    texel
+        .color
+        .map(|color| coarse(byte(srgb(color * shade)), 4))
 }
 
 /// glTF's channels: occlusion, roughness, metallic.
 fn metallic_roughness(texel: &Texel) -> [u8; 3] {
     let occlusion = 0.4 + 0.6 * texel.openness;
-    let roughness = 0.97 - 0.15 * texel.openness;
-    [byte(occlusion), byte(roughness), 0]
+    [byte(occlusion), byte(texel.roughness), 0].map(|v| coarse(v, 8))
 }
 
 /// Tangent-space normals of the height field, with y up the image (OpenGL's convention).
-fn normals(texels: &[Texel], yarns: u32) -> impl Iterator<Item = [u8; 3]> {
-    let pixels_per_spacing = SIZE as f32 / yarns as f32;
+fn normals(texels: &[Texel], units: f32) -> impl Iterator<Item = [u8; 3]> {
+    let pixels_per_unit = SIZE as f32 / units;
     let height = |column: usize, row: usize| texels[row % SIZE * SIZE + column % SIZE].height;
     (0..SIZE * SIZE).map(move |index| {
         let (column, row) = (index % SIZE, index / SIZE);
-        let slope = |ahead: f32, behind: f32| RELIEF * pixels_per_spacing * (ahead - behind) / 2.0;
+        let slope = |ahead: f32, behind: f32| RELIEF * pixels_per_unit * (ahead - behind) / 2.0;
         let right = slope(height(column + 1, row), height(column + SIZE - 1, row));
         let down = slope(height(column, row + 1), height(column, row + SIZE - 1));
         let length = (right * right + down * down + 1.0).sqrt();
-        [-right, down, 1.0].map(|axis| byte(0.5 + 0.5 * axis / length))
+        [-right, down, 1.0].map(|axis| coarse(byte(0.5 + 0.5 * axis / length), 4))
     })
 }
 
@@ -107,14 +119,24 @@ fn byte(share: f32) -> u8 {
     (255.0 * share.clamp(0.0, 1.0)).round() as u8
 }
 
-fn save(path: &Path, pixels: impl Iterator<Item = [u8; 3]>) -> Result<(), Box<dyn Error>> {
+/// The nearest multiple of `step`: what nobody sees takes most of the space in a file.
+fn coarse(value: u8, step: u8) -> u8 {
+    let half = step / 2;
+    (value.saturating_add(half) / step).saturating_mul(step)
+}
+
+fn save<const N: usize>(
+    path: &Path,
+    kind: ExtendedColorType,
+    pixels: impl Iterator<Item = [u8; N]>,
+) -> Result<(), Box<dyn Error>> {
     let bytes: Vec<u8> = pixels.flatten().collect();
     let file = BufWriter::new(File::create(path)?);
     PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive).write_image(
         &bytes,
         SIZE as u32,
         SIZE as u32,
-        ExtendedColorType::Rgb8,
+        kind,
     )?;
     println!("{}", path.display());
     Ok(())

@@ -1,4 +1,4 @@
-//! Woven cloth as a function of a place on a tile: which yarn lies on top there, how high, and in what colour.
+//! Woven cloth: which yarn lies on top at a place, how high, and in what colour.
 //!
 //! Lengths and heights are in yarn spacings. `u` runs along the wefts and `v` along the warps, 0 to 1 over a tile.
 //! Everything repeats with the tile: the yarns are whole in number, the weave repeats within them, and the noise lies
@@ -6,8 +6,13 @@
 
 use std::f32::consts::PI;
 
+use super::{
+    Fabric, Texel,
+    noise::{ease, hash, mix, surface, wave, wrap},
+};
+
 /// A cloth of `yarns` warps and as many wefts on a tile.
-pub struct Fabric {
+pub struct Weave {
     /// Yarns on a tile, in each direction; a multiple of the weave's repeat.
     pub yarns: u32,
     /// Whether the warp lies over the weft where the two cross.
@@ -32,19 +37,12 @@ pub struct Yarn {
     pub stray: f32,
     /// Share of the colour that has worn off where a yarn is highest \[-\].
     pub wear: f32,
+    /// Roughness where a yarn is highest \[-\].
+    pub gloss: f32,
+    /// How high the fibres on it stand, as a part of those of cotton \[-\].
+    pub fuzz: f32,
     /// Tells the noise of the two directions and of different cloths apart.
     pub seed: u32,
-}
-
-/// The cloth at one place.
-#[derive(Clone, Copy, Default)]
-pub struct Texel {
-    /// Height over the middle of the cloth \[spacing\].
-    pub height: f32,
-    /// Linear colour.
-    pub color: [f32; 3],
-    /// How open the place is to light: 0 in the gaps between yarns, 1 on top of them \[-\].
-    pub openness: f32,
 }
 
 /// Half the way that a yarn goes up and down through the cloth \[spacing\].
@@ -60,7 +58,7 @@ const FIBER: f32 = 0.075;
 const GAP: f32 = -0.22;
 
 /// Plain weave: over one, under one. Light, and alike on both sides.
-pub fn cotton() -> Fabric {
+pub fn cotton() -> Weave {
     let warp = Yarn {
         color: [0.86, 0.855, 0.84],
         radius: 0.49,
@@ -68,9 +66,11 @@ pub fn cotton() -> Fabric {
         tone: 0.1,
         stray: 0.06,
         wear: 0.0,
+        gloss: 0.82,
+        fuzz: 1.0,
         seed: 1,
     };
-    Fabric {
+    Weave {
         yarns: 64,
         warp_is_over: |warp, weft| (warp + weft).is_multiple_of(2),
         weft: Yarn {
@@ -82,8 +82,58 @@ pub fn cotton() -> Fabric {
     }
 }
 
+/// Satin, over seven and under one: long smooth floats of thin threads that shine.
+pub fn silk() -> Weave {
+    let warp = Yarn {
+        color: [0.84, 0.83, 0.81],
+        radius: 0.62,
+        slub: 0.03,
+        tone: 0.05,
+        stray: 0.03,
+        wear: 0.0,
+        gloss: 0.42,
+        fuzz: 0.15,
+        seed: 5,
+    };
+    Weave {
+        yarns: 160,
+        warp_is_over: |warp, weft| !(warp + 3 * weft).is_multiple_of(8),
+        weft: Yarn {
+            seed: 6,
+            radius: 0.5,
+            ..warp
+        },
+        warp,
+    }
+}
+
+/// Plain weave of thick, uneven, unbleached yarns.
+pub fn canvas() -> Weave {
+    let warp = Yarn {
+        color: [0.62, 0.54, 0.41],
+        radius: 0.5,
+        slub: 0.16,
+        tone: 0.2,
+        stray: 0.07,
+        wear: 0.0,
+        gloss: 0.88,
+        fuzz: 1.3,
+        seed: 7,
+    };
+    Weave {
+        yarns: 36,
+        warp_is_over: |warp, weft| (warp + weft).is_multiple_of(2),
+        weft: Yarn {
+            seed: 8,
+            slub: 0.2,
+            ..warp
+        },
+        warp,
+    }
+}
+
 /// Twill, over two and under one: indigo warps over raw wefts, with the diagonal that makes denim.
-pub fn denim() -> Fabric {
+pub fn denim() -> Weave {
     let warp = Yarn {
         color: [0.022, 0.05, 0.125],
         radius: 0.58,
@@ -91,6 +141,8 @@ pub fn denim() -> Fabric {
         tone: 0.34,
         stray: 0.05,
         wear: 0.07,
+        gloss: 0.82,
+        fuzz: 1.0,
         seed: 3,
     };
     let weft = Yarn {
@@ -100,9 +152,11 @@ pub fn denim() -> Fabric {
         tone: 0.08,
         stray: 0.05,
         wear: 0.0,
+        gloss: 0.82,
+        fuzz: 1.0,
         seed: 4,
     };
-    Fabric {
+    Weave {
         yarns: 48,
         warp_is_over: |warp, weft| !(warp + weft).is_multiple_of(3),
         warp,
@@ -110,13 +164,15 @@ pub fn denim() -> Fabric {
     }
 }
 
-impl Fabric {
+impl Fabric for Weave {
     /// The topmost yarn at a place, or the gap.
-    pub fn at(&self, u: f32, v: f32) -> Texel {
+    fn at(&self, u: f32, v: f32) -> Texel {
         let gap = Texel {
             height: GAP,
             color: self.weft.color.map(|color| 0.6 * color),
             openness: 0.0,
+            roughness: 0.97,
+            cover: 1.0,
         };
         let over = self.warp_is_over;
         let warps = self.strands(&self.warp, v, u, over);
@@ -127,6 +183,12 @@ impl Fabric {
         )
     }
 
+    fn units(&self) -> f32 {
+        self.yarns as f32
+    }
+}
+
+impl Weave {
     /// The three yarns of one direction that may cover a place `along` and `across` them.
     fn strands(
         &self,
@@ -174,7 +236,7 @@ impl Yarn {
         }
         let round = (1.0 - side * side).sqrt();
         let fiber = self.fiber(index, along, side);
-        let height = CRIMP * lift + BULGE * (round - 0.6) + FIBER * fiber * round;
+        let height = CRIMP * lift + BULGE * (round - 0.6) + FIBER * self.fuzz * fiber * round;
 
         let tone =
             1.0 + self.tone * (0.6 * own(6) + 0.7 * noise(7, 6) + 0.5 * noise(8, 50) + 0.8 * fiber);
@@ -187,6 +249,8 @@ impl Yarn {
             height,
             color,
             openness,
+            roughness: mix(0.97, self.gloss, openness),
+            cover: 1.0,
         })
     }
 
@@ -210,72 +274,13 @@ impl Yarn {
     }
 }
 
-/// Periodic noise along a line of its own for each `row`, -1 to 1. `t` goes from 0 to 1 over `cells` cells.
-fn wave(seed: u32, row: u32, t: f32, cells: u32) -> f32 {
-    let place = t * cells as f32;
-    let cell = place.floor() as i32;
-    let value = |cell: i32| hash(seed, row, wrap(cell, cells));
-    2.0 * mix(value(cell), value(cell + 1), ease(place - place.floor())) - 1.0
-}
-
-/// Periodic noise over a plane, -1 to 1, that repeats after `x_cells` by `y_cells` cells of size 1.
-fn surface(seed: u32, x: f32, x_cells: u32, y: f32, y_cells: u32) -> f32 {
-    let (column, row) = (x.floor() as i32, y.floor() as i32);
-    let value = |column: i32, row: i32| hash(seed, wrap(column, x_cells), wrap(row, y_cells));
-    let line = |row: i32| {
-        mix(
-            value(column, row),
-            value(column + 1, row),
-            ease(x - x.floor()),
-        )
-    };
-    2.0 * mix(line(row), line(row + 1), ease(y - y.floor())) - 1.0
-}
-
-/// A number from 0 to 1 that is always the same for the same three integers.
-fn hash(a: u32, b: u32, c: u32) -> f32 {
-    let mut bits =
-        a.wrapping_mul(0x9E37_79B1) ^ b.wrapping_mul(0x85EB_CA77) ^ c.wrapping_mul(0xC2B2_AE3D);
-    for _ in 0..2 {
-        bits = (bits ^ (bits >> 15)).wrapping_mul(0x2C1B_3C6D);
-        bits = (bits ^ (bits >> 12)).wrapping_mul(0x297A_2D39);
-    }
-    bits ^= bits >> 15;
-    (bits >> 8) as f32 / 16_777_216.0
-}
-
-fn wrap(index: i32, count: u32) -> u32 {
-    index.rem_euclid(count as i32) as u32
-}
-
-fn mix(from: f32, to: f32, share: f32) -> f32 {
-    from + (to - from) * share
-}
-
-fn ease(t: f32) -> f32 {
-    t * t * (3.0 - 2.0 * t)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_tile_repeats() {
-        for fabric in [cotton(), denim()] {
-            for step in 0..200 {
-                let t = step as f32 / 200.0 + 0.001;
-                let (inside, outside) = (fabric.at(t, 0.25), fabric.at(t + 1.0, 0.25));
-                assert!((inside.height - outside.height).abs() < 0.02, "u = {t}");
-                let (inside, outside) = (fabric.at(0.25, t), fabric.at(0.25, t + 1.0));
-                assert!((inside.height - outside.height).abs() < 0.02, "v = {t}");
-            }
-        }
-    }
-
-    #[test]
     fn every_weave_repeats_within_the_tile() {
-        for fabric in [cotton(), denim()] {
+        for fabric in [silk(), cotton(), denim(), canvas()] {
             let over = fabric.warp_is_over;
             for yarn in 0..fabric.yarns {
                 assert_eq!(over(0, yarn), over(fabric.yarns, yarn));
