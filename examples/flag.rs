@@ -8,7 +8,6 @@ use std::process::ExitCode;
 use bevy::prelude::*;
 use common::{
     camera::OrbitCamera,
-    fabric::Fabrics,
     graphics::check_driver,
     scenes::{SceneAssets, SceneKind, spawn_scene},
     settings::DemoSettings,
@@ -29,7 +28,6 @@ fn main() -> ExitCode {
             StagePlugin::default(),
             ExitAfterFrames,
         ))
-        .init_resource::<Fabrics>()
         .insert_resource(SceneKind::Flag.wind())
         .add_systems(Startup, hoist)
         .add_systems(PostStartup, look)

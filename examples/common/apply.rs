@@ -11,10 +11,9 @@ use tailorbird::{prelude::*, sphere_controls::move_spheres};
 use super::{
     camera::OrbitCamera,
     crates::CratesPlugin,
-    fabric::Fabrics,
     garment,
     moving::MovingPlugin,
-    scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind, SceneSphere, spawn_scene},
+    scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind, SceneSphere, look, spawn_scene},
     settings::DemoSettings,
     shortcuts::use_shortcuts,
     stage::StagePlugin,
@@ -37,7 +36,6 @@ impl Plugin for DemoPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins((self.stage.clone(), MovingPlugin, CratesPlugin))
             .insert_resource(self.settings.clone())
-            .init_resource::<Fabrics>()
             .add_systems(
                 Update,
                 (use_shortcuts.before(ApplySettings), garment::add_mipmaps),
@@ -165,7 +163,6 @@ fn apply_fabric(
     mut commands: Commands,
     settings: Res<DemoSettings>,
     mut shown: Local<Option<(&'static str, bool)>>,
-    mut assets: SceneAssets,
     cloths: Query<Entity, With<SceneCloth>>,
 ) {
     let wanted = (settings.preset, settings.look.texture);
@@ -178,7 +175,7 @@ fn apply_fabric(
         return;
     }
     for entity in &cloths {
-        commands.entity(entity).insert(assets.cloth(&settings));
+        commands.entity(entity).insert(look(&settings));
     }
 }
 
@@ -214,6 +211,7 @@ fn apply_gizmos(settings: Res<DemoSettings>, mut store: ResMut<GizmoConfigStore>
         normals: look.normals,
         bounds: look.bounds,
         colliders: look.colliders,
+        wind: look.air,
     };
 }
 

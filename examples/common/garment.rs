@@ -1,11 +1,12 @@
 //! A skirt from a glTF file on a wooden figure.
 
 use bevy::{gltf::GltfPlugin, prelude::*};
-use image::RgbaImage;
-use tailorbird::prelude::*;
+use tailorbird::{
+    fabric::{Texels, with_mipmaps},
+    prelude::*,
+};
 
 use super::{
-    mipmaps::{Texels, with_mipmaps},
     scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind},
     settings::DemoSettings,
 };
@@ -41,12 +42,8 @@ pub fn add_mipmaps(
         } else {
             Texels::Value
         };
-        let (width, height) = (image.width(), image.height());
-        let full = image.data.clone();
-        let Some(full) = full.and_then(|data| RgbaImage::from_raw(width, height, data)) else {
-            continue;
-        };
-        match images.insert(id, with_mipmaps(&full, texels)) {
+        let small = with_mipmaps(image.clone(), texels);
+        match images.insert(id, small) {
             Ok(()) => changed = true,
             Err(error) => warn!("{name}: {error}"),
         }

@@ -1,4 +1,4 @@
-//! What the examples share, and the tests with them: scenes, stage, fabrics, camera, panel, scripts, pictures.
+//! What the examples share, and the tests with them: scenes, stage, camera, panel, scripts, pictures.
 
 #![allow(dead_code, reason = "each example and each test uses a part")]
 
@@ -7,11 +7,9 @@ pub mod apply;
 pub mod camera;
 pub mod character;
 pub mod crates;
-pub mod fabric;
 pub mod garment;
 pub mod graphics;
 pub mod help;
-pub mod mipmaps;
 pub mod moving;
 pub mod offscreen;
 pub mod panel;

@@ -22,7 +22,7 @@ use bevy::{
     window::{ExitCondition, WindowResolution},
     winit::WinitPlugin,
 };
-use tailorbird::prelude::*;
+use tailorbird::{fabric::FabricLibrary, prelude::*};
 
 use super::{
     actor::Actor, apply::DemoPlugin, garment, graphics::check_driver, script::Script,
@@ -148,6 +148,13 @@ impl Offscreen {
         };
         for _ in 0..3 {
             offscreen.update(1.0 / 60.0, true);
+        }
+        for _ in 0..1000 {
+            if offscreen.app.world().resource::<FabricLibrary>().is_ready() {
+                break;
+            }
+            thread::sleep(Duration::from_millis(10));
+            offscreen.update(0.0, false);
         }
         offscreen
     }

@@ -88,6 +88,9 @@ fn air(ui: &mut Ui, settings: &mut DemoSettings) {
     });
     ui.add(Slider::new(&mut wind.gusts.strength, 0.0..=1.0).text("gusts"));
     ui.add(Slider::new(&mut wind.gusts.period, 0.5..=10.0).text("between gusts [s]"));
+    let swirls = &mut wind.turbulence;
+    ui.add(Slider::new(&mut swirls.speed, 0.0..=5.0).text("turbulence [m/s]"));
+    ui.add(Slider::new(&mut swirls.scale, 0.2..=5.0).text("largest eddies [m]"));
     ui.horizontal(|ui| {
         ui.radio_value(&mut wind.model, WindModel::Aerodynamic, "drag and lift");
         ui.radio_value(&mut wind.model, WindModel::Classic, "classic");

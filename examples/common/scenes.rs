@@ -5,9 +5,7 @@ use std::{f32::consts::FRAC_PI_2, fmt, str::FromStr};
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tailorbird::prelude::*;
 
-use super::{
-    camera::OrbitCamera, character, crates, fabric::Fabrics, garment, props, settings::DemoSettings,
-};
+use super::{camera::OrbitCamera, character, crates, garment, props, settings::DemoSettings};
 
 /// Everything that a scene spawns, so that it can be cleared away.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -87,8 +85,13 @@ impl SceneKind {
         match self {
             Self::Flag => Wind {
                 gusts: Gusts {
-                    strength: 0.5,
+                    strength: 0.4,
                     period: 3.0,
+                },
+                turbulence: Turbulence {
+                    speed: 1.2,
+                    scale: 1.5,
+                    seed: 1,
                 },
                 ..Wind::steady(Vec3::new(7.0, 0.0, 1.0))
             },
@@ -102,8 +105,13 @@ impl SceneKind {
             },
             Self::Banner => Wind {
                 gusts: Gusts {
-                    strength: 0.6,
+                    strength: 0.5,
                     period: 2.0,
+                },
+                turbulence: Turbulence {
+                    speed: 0.7,
+                    scale: 1.2,
+                    seed: 2,
                 },
                 ..Wind::steady(Vec3::new(1.5, 0.0, 2.5))
             },
@@ -278,7 +286,6 @@ fn corners(which: &[GridCorner], at: Vec3) -> ClothPins {
 pub struct SceneAssets<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<StandardMaterial>>,
-    fabrics: Res<'w, Fabrics>,
     server: Res<'w, AssetServer>,
 }
 
@@ -286,18 +293,6 @@ impl SceneAssets<'_> {
     /// A ball of this radius [m].
     pub fn sphere(&mut self, radius: f32) -> Mesh3d {
         Mesh3d(self.meshes.add(Sphere::new(radius).mesh().uv(64, 32)))
-    }
-
-    /// The material of the scene's cloth.
-    pub fn cloth(&mut self, settings: &DemoSettings) -> MeshMaterial3d<StandardMaterial> {
-        let scene = settings.scene;
-        let material = self.fabrics.material(
-            settings.preset,
-            scene.color(),
-            scene.size(),
-            settings.look.texture,
-        );
-        MeshMaterial3d(self.materials.add(material))
     }
 
     /// A scene from a glTF file in the folder of assets.
@@ -321,6 +316,20 @@ impl SceneAssets<'_> {
     }
 }
 
+/// How the scene's cloth looks. What has a colour of its own is not dyed.
+pub fn look(settings: &DemoSettings) -> ClothLook {
+    let fabric = Fabric::by_name(settings.preset).unwrap_or_default();
+    let dye = match fabric {
+        Fabric::Silk | Fabric::Cotton => settings.scene.color(),
+        Fabric::Denim => Color::srgb(0.55, 0.60, 0.72),
+        _ => Color::WHITE,
+    };
+    ClothLook {
+        textured: settings.look.texture,
+        ..ClothLook::new(fabric).with_dye(dye)
+    }
+}
+
 /// Of something that is drawn.
 pub type MaterialOf = MeshMaterial3d<StandardMaterial>;
 
@@ -330,7 +339,7 @@ pub fn spawn_scene(commands: &mut Commands, settings: &DemoSettings, assets: &mu
     if scene == SceneKind::Garment {
         return garment::spawn(commands, settings, assets);
     }
-    let cloth = spawn_cloth(commands, settings, assets);
+    let cloth = spawn_cloth(commands, settings);
     spawn_sphere(commands, settings, assets);
     match scene {
         SceneKind::Curtain => props::spawn_rail(commands, assets),
@@ -353,11 +362,7 @@ pub fn spawn_scene(commands: &mut Commands, settings: &DemoSettings, assets: &mu
     }
 }
 
-fn spawn_cloth(
-    commands: &mut Commands,
-    settings: &DemoSettings,
-    assets: &mut SceneAssets,
-) -> Entity {
+fn spawn_cloth(commands: &mut Commands, settings: &DemoSettings) -> Entity {
     let scene = settings.scene;
     let mut cloth = commands.spawn((
         Name::new(scene.name()),
@@ -368,7 +373,7 @@ fn spawn_cloth(
         settings.shading,
         scene.pins(settings.resolution),
         scene.transform(),
-        assets.cloth(settings),
+        look(settings),
     ));
     if let Some(shape) = scene.cloth(settings.resolution) {
         cloth.insert(shape);

@@ -70,6 +70,8 @@ pub struct Look {
     pub bounds: bool,
     /// The shapes of colliders.
     pub colliders: bool,
+    /// Zones of wind, and arrows for the air.
+    pub air: bool,
 }
 
 impl Default for Look {
@@ -85,6 +87,7 @@ impl Default for Look {
             normals: false,
             bounds: false,
             colliders: false,
+            air: false,
         }
     }
 }
@@ -149,7 +152,7 @@ impl DemoSettings {
 
 impl Look {
     /// All that can be shown, by name.
-    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 10] {
+    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 11] {
         [
             ("texture", &mut self.texture),
             ("wireframe", &mut self.wireframe),
@@ -161,6 +164,7 @@ impl Look {
             ("normals", &mut self.normals),
             ("bounds", &mut self.bounds),
             ("colliders", &mut self.colliders),
+            ("air", &mut self.air),
         ]
     }
 

@@ -47,6 +47,7 @@ pub use tailorbird_cloth as cloth;
 pub mod debug;
 pub mod diagnostics;
 pub mod drag;
+pub mod fabric;
 pub mod mesh;
 pub mod picking;
 pub mod plugins;
@@ -61,6 +62,7 @@ pub mod prelude {
             ClothDrag, ClothDragPlugin, ClothDragSettings, ClothGrabbed, ClothPinned,
             ClothReleased, ClothUnpinned,
         },
+        fabric::{ClothFabricPlugin, ClothLook, Fabric},
         mesh::{
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
             ClothUnseen, ColorChannel, MeshParts, MeshPins,

@@ -14,6 +14,7 @@ use crate::prelude::*;
 /// | --- | --- |
 /// | [`ClothPlugin`] | simulates; alone, it is all that a server needs |
 /// | [`ClothMeshPlugin`] | builds a mesh for each cloth, and writes it once per frame, between the last two steps |
+/// | [`ClothFabricPlugin`] | gives cloths the material of their [`ClothLook`] |
 /// | [`ClothPickingPlugin`] | lets pointers hit cloth: `On<Pointer<…>>` observers work on it as on any mesh |
 /// | [`ClothDragPlugin`] | drags cloth with the pointer, and pins it with a key |
 /// | [`SphereControlsPlugin`] | moves entities with [`SphereControls`] by keys |
@@ -64,6 +65,7 @@ impl PluginGroup for ClothPlugins {
                     ..ClothMeshSettings::default()
                 },
             })
+            .add(ClothFabricPlugin::default())
             .add(ClothPickingPlugin)
             .add(ClothDragPlugin)
             .add(SphereControlsPlugin)

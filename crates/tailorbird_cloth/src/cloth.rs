@@ -147,6 +147,14 @@ impl Cloth {
         self.with_origin(Vec2::splat(0.5))
     }
 
+    /// Width and height at rest \[m\], where the cloth is a grid.
+    pub fn size(&self) -> Option<Vec2> {
+        match self.shape {
+            ClothShape::Grid { size, .. } => Some(size),
+            ClothShape::Mesh { .. } => None,
+        }
+    }
+
     /// Columns and rows, where the cloth is a grid.
     pub fn resolution(&self) -> Option<UVec2> {
         match self.shape {

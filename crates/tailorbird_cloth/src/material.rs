@@ -24,6 +24,8 @@ const MOMME: f32 = 0.004_34;
 /// | [`silk`](Self::silk) | 0.069 kg/m² | 16 momme charmeuse, 1 momme = 4.340 g/m² |
 /// | [`cotton`](Self::cotton) | 0.150 kg/m² | bed sheeting and shirting is sold at 110 to 200 g/m² |
 /// | [`denim`](Self::denim) | 0.475 kg/m² | 14 oz/yd², 1 oz/yd² = 33.906 g/m² |
+/// | [`canvas`](Self::canvas) | 0.339 kg/m² | 10 oz/yd² cotton duck |
+/// | [`lace`](Self::lace) | 0.060 kg/m² | curtain lace is sold at 40 to 80 g/m² |
 /// | [`leather`](Self::leather) | 0.860 kg/m² | 1.0 mm garment leather of 860 kg/m³ |
 /// | [`rubber`](Self::rubber) | 0.930 kg/m² | 1.0 mm sheet of natural rubber, 930 kg/m³ |
 ///
@@ -34,6 +36,8 @@ const MOMME: f32 = 0.004_34;
 /// | silk | 16000, 8000 | 17 | 3e-6 | estimates, in the range that Kawabata's instruments (KES-F) give for such fabrics |
 /// | cotton | 16000, 8000 | 60 | 8e-6 | estimates, as for silk |
 /// | denim | 9000, 9000 | 120 | 1e-4 | stretch and shear: KES-F, Journal of Textiles 2016, 4614168, Table 5 (EMT 5.5 %, G 2.18 gf/(cm deg)); bending: 6.2e-5 N m of the 11 oz denim of Wang, O'Brien and Ramamoorthi 2011, by weight to the power of 2.5 |
+/// | canvas | 20000, 15000 | 300 | 8e-5 | estimates: between denim and tarpaulin |
+/// | lace | 2000, 1500 | 10 | 1e-6 | estimates: a knitted net gives way more than any weave |
 /// | leather | 20000, 20000 | 7700 | 3e-4 | estimates: E = 20 MPa, Poisson's ratio 0.3; bending from a bending length of 3.3 cm |
 /// | rubber | 1500, 1500 | 500 | 1.7e-4 | shear modulus 0.5 MPa of vulcanised natural rubber, E = 3 G, B = E t³/9 |
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -123,6 +127,40 @@ impl ClothMaterial {
         }
     }
 
+    /// Cotton duck: tents, sails, bags.
+    pub const fn canvas() -> Self {
+        Self {
+            areal_density: 10.0 * OUNCE_PER_SQUARE_YARD,
+            warp_compliance: 1.0 / 20e3,
+            weft_compliance: 1.0 / 15e3,
+            shear_compliance: 1.0 / 300.0,
+            bend_compliance: 1.0 / 8e-5,
+            viscosity: 0.05,
+            damping: 0.5,
+            friction: 0.6,
+            thickness: 0.006,
+            drag: 1.2,
+            lift: 1.2,
+        }
+    }
+
+    /// Curtain lace: air goes through it, so that wind moves it less.
+    pub const fn lace() -> Self {
+        Self {
+            areal_density: 0.06,
+            warp_compliance: 1.0 / 2e3,
+            weft_compliance: 1.0 / 1.5e3,
+            shear_compliance: 1.0 / 10.0,
+            bend_compliance: 1.0 / 1e-6,
+            viscosity: 0.05,
+            damping: 0.3,
+            friction: 0.4,
+            thickness: 0.004,
+            drag: 0.6,
+            lift: 0.6,
+        }
+    }
+
     /// Garment leather, 1 mm.
     pub const fn leather() -> Self {
         Self {
@@ -158,13 +196,15 @@ impl ClothMaterial {
     }
 
     /// The presets with their names.
-    pub const fn presets() -> [(&'static str, Self); 5] {
+    pub const fn presets() -> [(&'static str, Self); 7] {
         [
             ("silk", Self::silk()),
             ("cotton", Self::cotton()),
             ("denim", Self::denim()),
+            ("canvas", Self::canvas()),
             ("leather", Self::leather()),
             ("rubber", Self::rubber()),
+            ("lace", Self::lace()),
         ]
     }
 

@@ -1,0 +1,223 @@
+//! Fabrics: how cloth moves and looks, by one name.
+//!
+//! ```
+//! # use bevy_ecs::prelude::*;
+//! # use bevy_math::{UVec2, Vec2};
+//! # use tailorbird::prelude::*;
+//! fn curtain(mut commands: Commands) {
+//!     let shape = Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48));
+//!     // Moves like silk and looks like it.
+//!     commands.spawn((shape.clone(), Fabric::Silk.bundle()));
+//!     // Looks like lace, and moves like leather.
+//!     commands.spawn((shape, ClothLook::new(Fabric::Lace), ClothMaterial::leather()));
+//! }
+//! ```
+//!
+//! The textures are in this repository's `assets/textures`; a game takes the files that it needs into its own folder of assets. Where one is
+//! missing the cloth is plain. All cloths of one look share one material.
+
+mod library;
+mod mipmaps;
+
+use bevy_app::{App, Plugin, PostUpdate};
+use bevy_asset::AssetServer;
+use bevy_camera::visibility::VisibilitySystems;
+use bevy_color::Color;
+use bevy_ecs::prelude::*;
+use bevy_material::AlphaMode;
+use bevy_math::Vec2;
+use bevy_pbr::StandardMaterial;
+use bevy_reflect::prelude::*;
+use tailorbird_cloth::prelude::*;
+
+pub use library::FabricLibrary;
+use library::{dress_cloths, load_textures};
+pub use mipmaps::{Texels, with_mipmaps};
+
+/// A fabric with a name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+pub enum Fabric {
+    /// [`ClothMaterial::silk`]: a satin that shines.
+    Silk,
+    /// [`ClothMaterial::cotton`]: plain weave.
+    #[default]
+    Cotton,
+    /// [`ClothMaterial::denim`]: blue twill.
+    Denim,
+    /// [`ClothMaterial::canvas`]: plain weave of thick yarns.
+    Canvas,
+    /// [`ClothMaterial::leather`]: grained.
+    Leather,
+    /// [`ClothMaterial::rubber`]: dull black.
+    Rubber,
+    /// [`ClothMaterial::lace`]: flowers on a net, with holes.
+    Lace,
+}
+
+impl Fabric {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Silk,
+        Self::Cotton,
+        Self::Denim,
+        Self::Canvas,
+        Self::Leather,
+        Self::Rubber,
+        Self::Lace,
+    ];
+
+    /// Its name, in lower case: that of its textures.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Silk => "silk",
+            Self::Cotton => "cotton",
+            Self::Denim => "denim",
+            Self::Canvas => "canvas",
+            Self::Leather => "leather",
+            Self::Rubber => "rubber",
+            Self::Lace => "lace",
+        }
+    }
+
+    /// The fabric of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|fabric| fabric.name() == name)
+    }
+
+    /// How it moves.
+    pub const fn physics(self) -> ClothMaterial {
+        match self {
+            Self::Silk => ClothMaterial::silk(),
+            Self::Cotton => ClothMaterial::cotton(),
+            Self::Denim => ClothMaterial::denim(),
+            Self::Canvas => ClothMaterial::canvas(),
+            Self::Leather => ClothMaterial::leather(),
+            Self::Rubber => ClothMaterial::rubber(),
+            Self::Lace => ClothMaterial::lace(),
+        }
+    }
+
+    /// How it moves and how it looks, for the entity of a cloth.
+    pub fn bundle(self) -> impl Bundle {
+        (self.physics(), ClothLook::new(self))
+    }
+
+    /// How its surface takes light, without textures: what has a colour of its own in the mean of its texture.
+    fn surface(self, dye: Color, textured: bool) -> StandardMaterial {
+        let (roughness, reflectance, through) = match self {
+            Self::Silk => (0.5, 0.4, 0.3),
+            Self::Cotton => (1.0, 0.3, 0.2),
+            Self::Denim => (1.0, 0.25, 0.0),
+            Self::Canvas => (1.0, 0.3, 0.08),
+            Self::Leather => (0.55, 0.5, 0.0),
+            Self::Rubber => (0.7, 0.5, 0.0),
+            Self::Lace => (1.0, 0.3, 0.35),
+        };
+        // Textures have the roughness of each place.
+        let perceptual_roughness = if textured { 1.0 } else { roughness };
+        let base_color = match self {
+            _ if textured => dye,
+            Self::Denim => Color::srgb(0.16, 0.23, 0.38),
+            Self::Leather => Color::srgb(0.38, 0.24, 0.15),
+            Self::Rubber => Color::srgb(0.19, 0.19, 0.19),
+            _ => dye,
+        };
+        let has_holes = self == Self::Lace && textured;
+        StandardMaterial {
+            base_color,
+            perceptual_roughness,
+            reflectance,
+            metallic: 0.0,
+            diffuse_transmission: through,
+            alpha_mode: if has_holes {
+                AlphaMode::Mask(0.4)
+            } else {
+                AlphaMode::Opaque
+            },
+            double_sided: true,
+            cull_mode: None,
+            ..StandardMaterial::default()
+        }
+    }
+
+    /// The side of one tile of its textures \[m\].
+    pub const fn tile(self) -> f32 {
+        match self {
+            Self::Silk => 0.06,
+            Self::Lace => 0.15,
+            _ => 0.1,
+        }
+    }
+}
+
+/// How a cloth looks: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothLook {
+    /// What it is made of.
+    pub fabric: Fabric,
+    /// What the fabric's own colour is multiplied with.
+    pub dye: Color,
+    /// Whether it has the textures of its fabric.
+    pub textured: bool,
+    /// How long a unit of the texture coordinates is on the cloth \[m\]. Where it is not given, that is the size of a grid, and 1 m for
+    /// any other mesh.
+    pub uv_size: Option<Vec2>,
+}
+
+impl ClothLook {
+    /// As the fabric comes, undyed.
+    pub fn new(fabric: Fabric) -> Self {
+        Self {
+            fabric,
+            dye: Color::WHITE,
+            textured: true,
+            uv_size: None,
+        }
+    }
+
+    /// Dyed.
+    #[must_use]
+    pub fn with_dye(self, dye: impl Into<Color>) -> Self {
+        Self {
+            dye: dye.into(),
+            ..self
+        }
+    }
+}
+
+impl Default for ClothLook {
+    fn default() -> Self {
+        Self::new(Fabric::default())
+    }
+}
+
+/// Makes cloths look like their [`ClothLook`]. Without a renderer it does nothing.
+pub struct ClothFabricPlugin {
+    /// The folder with the textures, in that of the assets.
+    pub folder: String,
+}
+
+impl Default for ClothFabricPlugin {
+    fn default() -> Self {
+        Self {
+            folder: "textures".to_owned(),
+        }
+    }
+}
+
+impl Plugin for ClothFabricPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothLook>()
+            .insert_resource(FabricLibrary::new(&self.folder))
+            .add_systems(
+                PostUpdate,
+                (dress_cloths, load_textures)
+                    .chain()
+                    .before(VisibilitySystems::CheckVisibility)
+                    .run_if(resource_exists::<AssetServer>)
+                    .run_if(resource_exists::<bevy_asset::Assets<StandardMaterial>>)
+                    .run_if(resource_exists::<bevy_asset::Assets<bevy_image::Image>>),
+            );
+    }
+}
