@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_egui::egui;
-use egui::{ComboBox, DragValue, Slider, Ui};
+use egui::{DragValue, Slider, Ui};
 use tailorbird::prelude::*;
 
 use super::{
@@ -117,17 +117,15 @@ fn solver(ui: &mut Ui, settings: &mut DemoSettings, substeps_now: u32) {
 }
 
 fn material(ui: &mut Ui, settings: &mut DemoSettings) {
-    let mut chosen = settings.preset;
-    ComboBox::from_label("preset")
-        .selected_text(chosen)
-        .show_ui(ui, |ui| {
-            for (name, _) in ClothMaterial::presets() {
-                ui.selectable_value(&mut chosen, name, name);
+    ui.horizontal_wrapped(|ui| {
+        for fabric in Fabric::ALL {
+            let name = fabric.name();
+            // A click on the one that is chosen takes its values back.
+            if ui.selectable_label(settings.preset == name, name).clicked() {
+                settings.choose_preset(name);
             }
-        });
-    if chosen != settings.preset {
-        settings.choose_preset(chosen);
-    }
+        }
+    });
     let material = &mut settings.material;
     compliance(ui, &mut material.warp_compliance, 1.0, "warp [m/N]");
     compliance(ui, &mut material.weft_compliance, 1.0, "weft [m/N]");

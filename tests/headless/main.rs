@@ -12,6 +12,7 @@ mod catenary;
 mod determinism;
 mod drag;
 mod drawn_holds;
+mod fabric;
 mod forces;
 mod frame_rate;
 mod free_fall;

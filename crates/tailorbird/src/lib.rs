@@ -37,7 +37,8 @@
 //! | [`cloth::inertia`] | a cloth on something that moves: what it feels, teleports, speed limits |
 //! | [`cloth::collider`] | what a cloth collides with: shapes, layers, bodies |
 //! | `tailorbird_avian`, `tailorbird_rapier` | bodies of physics engines |
-//! | [`cloth::material`], [`cloth::wind`] | fabrics, air |
+//! | [`fabric`], [`cloth::material`] | what cloth is made of: how it moves, how it looks |
+//! | [`cloth::wind`] | air: gusts, turbulence, zones |
 //! | [`cloth::solver`], [`cloth::settings`], [`cloth::sleep`] | accuracy and what it costs |
 //! | [`picking`], [`drag`] | the pointer |
 //! | [`cloth::error`] | what happens to wrong input |
