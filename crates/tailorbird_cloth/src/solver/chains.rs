@@ -17,6 +17,7 @@ use crate::{
     crew::Crew,
     material::ClothMaterial,
     particles::ClothParticles,
+    points::Points,
     stages::Substep,
     tethers::{Anchors, ClothTethers},
     topology::{Topology, lattice::Lattice},
@@ -181,11 +182,13 @@ impl Pass<'_> {
     }
 }
 
-/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole.
+/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
+/// its momentum.
 pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParticles) {
     if particles.is_empty() || particles.len() != topology.particles() {
         return;
     }
+    let free = !particles.inv_mass.contains(&0.0);
     let ClothParticles {
         position,
         previous_position,
@@ -193,31 +196,61 @@ pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParti
         inv_mass,
         ..
     } = particles;
-    let whole = RigidMotion::fit(mass, position, previous_position);
     if let Some(lattice) = &topology.lattice {
-        let sheet = Sheet {
-            columns: lattice.columns as usize,
-            rows: lattice.rows as usize,
-            position: SharedPoints::new(position),
-            inv_mass: Shared::new(inv_mass),
-            normal: None,
-            pressed: None,
-        };
+        if !squeeze::any(level, bare(lattice, position, inv_mass), lattice.spacing) {
+            return;
+        }
+        let whole = RigidMotion::of_all(mass, position, previous_position);
         let previous = SharedPoints::new(previous_position);
+        let sheet = bare(lattice, position, inv_mass);
         squeeze::stop(level, sheet, previous, lattice.spacing, whole);
+        if free {
+            give_back(whole, mass, position, previous_position);
+        }
     } else if let Some(fabric) = &topology.fabric {
-        for ([a, b], rest_length) in fabric.chains().edges() {
-            let ends = [a, b].map(|i| i as usize);
-            let places = ends.map(|i| position.get(i));
-            let least = squeeze::LEAST * rest_length * rest_length;
-            if places[0].distance_squared(places[1]) < least {
-                for (i, place) in ends.into_iter().zip(places) {
+        let is_squeezed = |position: &Points, [a, b]: [u32; 2], rest_length: f32| {
+            let [a, b] = [a, b].map(|i| position.get(i as usize));
+            a.distance_squared(b) < squeeze::LEAST * rest_length * rest_length
+        };
+        let mut edges = fabric.chains().edges();
+        if !edges.any(|(ends, rest_length)| is_squeezed(position, ends, rest_length)) {
+            return;
+        }
+        let whole = RigidMotion::of_all(mass, position, previous_position);
+        for (ends, rest_length) in fabric.chains().edges() {
+            if is_squeezed(position, ends, rest_length) {
+                for i in ends.map(|i| i as usize) {
                     if inv_mass[i] > 0.0 {
+                        let place = position.get(i);
                         previous_position.set(i, place - whole.at(place));
                     }
                 }
             }
         }
+        if free {
+            give_back(whole, mass, position, previous_position);
+        }
+    }
+}
+
+/// A sheet without contacts.
+fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]) -> Sheet<'a> {
+    Sheet {
+        columns: lattice.columns as usize,
+        rows: lattice.rows as usize,
+        position: SharedPoints::new(position),
+        inv_mass: Shared::new(inv_mass),
+        normal: None,
+        pressed: None,
+    }
+}
+
+/// Gives all particles what is missing of the motion of the whole as it was.
+fn give_back(was: RigidMotion, mass: &[f32], position: &Points, previous: &mut Points) {
+    let is = RigidMotion::of_all(mass, position, previous);
+    for i in 0..mass.len() {
+        let place = position.get(i);
+        previous.set(i, previous.get(i) - (was.at(place) - is.at(place)));
     }
 }
 

@@ -33,12 +33,20 @@ impl RigidMotion {
     /// The rigid motion that has the linear and the angular momentum of these particles, of which it takes a sample.
     /// Without rotation where they lie in a line.
     pub fn fit(mass: &[f32], position: &Points, previous: &Points) -> Self {
+        // Odd, so that the sample is not one column of a sheet.
+        Self::of_every((mass.len() / SAMPLES) | 1, mass, position, previous)
+    }
+
+    /// That of all particles.
+    pub fn of_all(mass: &[f32], position: &Points, previous: &Points) -> Self {
+        Self::of_every(1, mass, position, previous)
+    }
+
+    fn of_every(every: usize, mass: &[f32], position: &Points, previous: &Points) -> Self {
         let len = mass.len();
         if len == 0 || !position.is_of(len) || !previous.is_of(len) {
             return Self::default();
         }
-        // Odd, so that the sample is not one column of a sheet.
-        let every = (len / SAMPLES) | 1;
         // Moments around a particle, so that they do not grow with the distance from the origin.
         let origin = position.get(0).as_dvec3();
         let (mut total, mut moment, mut momentum, mut spin) =

@@ -17,6 +17,37 @@ use super::{
 /// The least q/L² of an edge whose ends keep a motion of their own.
 pub(crate) const LEAST: f32 = 0.5;
 
+/// Whether any edge along rows and columns is squeezed; also where there are fewer columns than lanes.
+pub(crate) fn any(level: Level, sheet: Sheet, spacing: Vec2) -> bool {
+    sheet.check();
+    dispatch!(level, simd => any_with(simd, sheet, spacing))
+}
+
+#[inline(always)]
+fn any_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2) -> bool {
+    let columns = sheet.columns;
+    let least = spacing * spacing * LEAST;
+    let mut any = false;
+    for row in 0..sheet.rows {
+        let first = row * columns;
+        let below = if row + 1 < sheet.rows { columns } else { 0 };
+        for (count, to, least) in [(columns - 1, 1, least.x), (below, columns, least.y)] {
+            each_window(
+                simd,
+                0..count,
+                #[inline(always)]
+                |window| {
+                    let from: V3<S> = sheet.position.load_at(simd, window, first);
+                    let d = sheet.position.load_at(simd, window, first + to) - from;
+                    let squeezed = d.dot(d).simd_lt(S::f32s::splat(simd, least));
+                    any |= squeezed.any_true();
+                },
+            );
+        }
+    }
+    any
+}
+
 /// Gives free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns the motion of the whole, by
 /// moving `previous`. `spacing` is between columns and between rows \[m\].
 pub(crate) fn stop(
