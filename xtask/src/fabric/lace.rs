@@ -11,15 +11,15 @@ use super::{
 pub struct Lace;
 
 /// Meshes of the net along u; along v there are as many pairs of rows as give nearly regular hexagons.
-const MESHES: f32 = 30.0;
-const ROWS: f32 = 17.0;
+const MESHES: f32 = 52.0;
+const ROWS: f32 = 30.0;
 
 /// Half the width of the net's threads, and of the cord \[mesh\].
-const THREAD: f32 = 0.13;
-const CORD: f32 = 0.32;
+const THREAD: f32 = 0.085;
+const CORD: f32 = 0.5;
 
 /// Threads of the stitches in a flower along a tile.
-const STITCHES: f32 = 120.0;
+const STITCHES: f32 = 160.0;
 
 impl Fabric for Lace {
     fn at(&self, u: f32, v: f32) -> Texel {

@@ -130,7 +130,7 @@ impl Fabric {
             metallic: 0.0,
             diffuse_transmission: through,
             alpha_mode: if has_holes {
-                AlphaMode::Mask(0.4)
+                AlphaMode::AlphaToCoverage
             } else {
                 AlphaMode::Opaque
             },
@@ -144,7 +144,7 @@ impl Fabric {
     pub const fn tile(self) -> f32 {
         match self {
             Self::Silk => 0.06,
-            Self::Lace => 0.15,
+            Self::Lace => 0.25,
             _ => 0.1,
         }
     }
