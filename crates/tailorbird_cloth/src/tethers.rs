@@ -1,8 +1,11 @@
 //! Tethers from every particle to up to four pins, or other particles that are held.
 
+use std::sync::{Arc, OnceLock};
+
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use bevy_tasks::AsyncComputeTaskPool;
 
 use crate::{
     cloth::Cloth,
@@ -16,8 +19,9 @@ use crate::{
             tether::{Straight, Tether},
         },
     },
+    step::ClothStep,
     topology::{
-        ClothTopology,
+        ClothTopology, Topology,
         geodesic::{Geodesics, tether_anchors},
         lattice::Lattice,
     },
@@ -29,11 +33,27 @@ use crate::{
 #[reflect(Component, Default)]
 pub struct ClothTethers {
     #[reflect(ignore)]
-    fields: [Option<Field>; ClothTethers::MOST],
+    fields: Fields,
     #[reflect(ignore)]
     pins: Vec<u32>,
     revision: u64,
+    #[reflect(ignore)]
+    coming: Option<Coming>,
 }
+
+/// Ways that are measured while the cloth goes on.
+#[derive(Clone, Debug)]
+struct Coming {
+    /// The step that begins with them.
+    due: u64,
+    anchors: Vec<u32>,
+    fields: Arc<OnceLock<Fields>>,
+}
+
+type Fields = [Option<Field>; ClothTethers::MOST];
+
+/// How many ways from pins to particles are measured within a step, at most.
+const WAYS_PER_STEP: usize = 4000;
 
 /// The ways from one pin.
 #[derive(Clone, Debug)]
@@ -138,8 +158,11 @@ impl ClothTethers {
 /// Measures the ways to the pins anew where the pins changed. Particles that are attached rigidly, or held at their targets, count
 /// as pins; those at springs do not.
 ///
-/// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line.
+/// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line. On other meshes it has to be
+/// found: that of a large one beside the steps, and used from a step on that depends on the size of the mesh alone. Until then its
+/// particles are tethered to those of the pins before that still hold.
 pub fn build_tethers(
+    step: Res<ClothStep>,
     mut cloths: Query<
         (
             &ClothTopology,
@@ -153,34 +176,85 @@ pub fn build_tethers(
     for (topology, solver, particles, mut tethers) in &mut cloths {
         let wanted = *solver == ClothSolver::Chains;
         let pins = || particles.anchors().filter(|_| wanted);
-        if tethers.revision == topology.revision && pins().eq(tethers.pins.iter().copied()) {
+        let known = tethers.revision == topology.revision;
+        if known && pins().eq(tethers.pins.iter().copied()) {
+            if tethers
+                .coming
+                .as_ref()
+                .is_some_and(|c| step.steps() >= c.due)
+                && let Some(coming) = tethers.coming.take()
+            {
+                let measured = coming.fields.get().cloned();
+                tethers.fields = measured.unwrap_or_else(|| fields(topology, &coming.anchors));
+            }
             continue;
         }
         tethers.revision = topology.revision;
         tethers.pins = pins().collect();
-        let rest = &topology.rest_positions;
-        let straight = topology.flat && topology.lattice.is_some();
-        let ways = (!straight && !tethers.pins.is_empty())
-            .then(|| Geodesics::new(rest, &topology.triangles));
+        tethers.coming = None;
         let mut pins = tethers.pins.clone();
         // So that a sheet does the same however its particles were given.
         pins.sort_unstable();
-        let mut anchors = tether_anchors(&pins, rest, ClothTethers::MOST).into_iter();
-        tethers.fields = [(); ClothTethers::MOST].map(|()| {
-            let pin = anchors.next()?;
-            let ways = match (&topology.lattice, &ways) {
-                (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
-                (Some(lattice), None) => Ways::Straight(
-                    *lattice,
-                    Straight {
-                        column: pin % lattice.columns,
-                        row: pin / lattice.columns,
-                        spacing: lattice.spacing,
-                    },
-                ),
-                (None, None) => return None,
+        let rest = &topology.rest_positions;
+        let anchors = tether_anchors(&pins, rest, ClothTethers::MOST);
+        let ways = if is_straight(topology) {
+            0
+        } else {
+            anchors.len() * rest.len()
+        };
+        // A cloth that is made or changed shape is not moving yet.
+        if !known || ways < WAYS_PER_STEP {
+            tethers.fields = fields(topology, &anchors);
+            continue;
+        }
+        for field in &mut tethers.fields {
+            field.take_if(|field| pins.binary_search(&field.pin).is_err());
+        }
+        let coming = Coming {
+            due: step.steps() + (ways / WAYS_PER_STEP) as u64,
+            anchors,
+            fields: Arc::default(),
+        };
+        // Without a pool they are measured when they are due.
+        if let Some(pool) = AsyncComputeTaskPool::try_get() {
+            let (topology, wanted) = (topology.0.clone(), coming.clone());
+            let measure = async move {
+                // Nobody waits for ways that changed again meanwhile.
+                if Arc::strong_count(&wanted.fields) > 1 {
+                    let fields = fields(&topology, &wanted.anchors);
+                    wanted.fields.get_or_init(|| fields);
+                }
             };
-            Some(Field { pin, ways })
-        });
+            pool.spawn(measure).detach();
+        }
+        tethers.coming = Some(coming);
     }
+}
+
+/// Whether ways along the sheet are straight lines.
+fn is_straight(topology: &Topology) -> bool {
+    topology.flat && topology.lattice.is_some()
+}
+
+/// The ways from these particles.
+fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
+    let ways = (!is_straight(topology) && !anchors.is_empty())
+        .then(|| Geodesics::new(&topology.rest_positions, &topology.triangles));
+    let mut anchors = anchors.iter().copied();
+    [(); ClothTethers::MOST].map(|()| {
+        let pin = anchors.next()?;
+        let ways = match (&topology.lattice, &ways) {
+            (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
+            (Some(lattice), None) => Ways::Straight(
+                *lattice,
+                Straight {
+                    column: pin % lattice.columns,
+                    row: pin / lattice.columns,
+                    spacing: lattice.spacing,
+                },
+            ),
+            (None, None) => return None,
+        };
+        Some(Field { pin, ways })
+    })
 }

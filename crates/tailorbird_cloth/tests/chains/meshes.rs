@@ -1,7 +1,9 @@
 //! Sheets as triangle meshes that are no grids.
 
 use bevy_math::{Vec2, Vec3};
-use tailorbird_cloth::prelude::*;
+use tailorbird_cloth::{prelude::*, tethers::ClothTethers};
+
+use crate::scene::{Scene, Sheet};
 
 /// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
 fn unit(key: u64) -> f32 {
@@ -101,4 +103,56 @@ pub fn bias_strip(length: f32, width: f32, spacing: f32) -> Cloth {
 fn mesh(positions: Vec<Vec3>, triangles: &[[usize; 3]]) -> Cloth {
     let indices: Vec<u32> = triangles.iter().flatten().map(|&i| i as u32).collect();
     Cloth::mesh(positions, indices)
+}
+
+#[test]
+fn pins_that_change_on_a_large_mesh_cost_no_step_its_time() {
+    let sheet = |pins: [u32; 2]| {
+        Sheet::new(&Scene {
+            cloth: Some(irregular(Vec2::ONE, [100, 100], 0, 5)),
+            pins: ClothPins::particles(pins),
+            ..Scene::default()
+        })
+    };
+    let tethers = |sheet: &Sheet| {
+        let tethers = sheet.get::<ClothTethers>();
+        let pins: Vec<u32> = tethers.pins().collect();
+        let lengths = (0..10_000)
+            .flat_map(|i| tethers.lengths(i))
+            .collect::<Vec<_>>();
+        (pins, lengths)
+    };
+    let (before, after) = ([0, 99], [0, 9_999]);
+    let run = || {
+        let mut sheet = sheet(before);
+        sheet.steps(3);
+        let [old, _] = tethers(&sheet).0[..] else {
+            panic!("two pins")
+        };
+        let mut kept = 0;
+        sheet.change(|pins: &mut ClothPins| *pins = ClothPins::particles(after));
+        // 20,000 ways, 4000 in a step.
+        for step in 0..6 {
+            sheet.step();
+            let (pins, lengths) = tethers(&sheet);
+            if step < 5 {
+                assert_eq!(
+                    (pins.as_slice(), lengths.len()),
+                    (&[old][..], 10_000),
+                    "step {step}"
+                );
+                kept += 1;
+            }
+        }
+        assert_eq!(kept, 5);
+        sheet
+    };
+    let mut changed = run();
+    let mut made = sheet(after);
+    made.step();
+    assert_eq!(tethers(&changed), tethers(&made));
+    changed.steps(20);
+    let mut again = run();
+    again.steps(20);
+    assert_eq!(changed.hash(), again.hash());
 }
