@@ -59,7 +59,7 @@ fn every_fabric_has_its_textures_with_smaller_copies() {
             &material.metallic_roughness_texture,
         ];
         for texture in textures {
-            let texture = texture.as_ref().expect(fabric.name());
+            let texture = texture.as_ref().expect("a texture");
             let images = app.world().resource::<Assets<Image>>();
             let image = images.get(texture).expect("the image");
             assert_eq!(image.size(), UVec2::splat(1024), "{fabric:?}");

@@ -3,7 +3,8 @@
 //!
 //! [`BlowingWind::velocity_at`] tells where the air goes, for what else is to move with it.
 //!
-//! Air that is the same everywhere costs least: 16 waves of turbulence take about as long as a substep (`bench -- kernels`).
+//! Air that is the same everywhere in a cloth costs least. Turbulence is summed up for each particle once in a step (`bench -- kernels`:
+//! `turbulence`), and so are zones whose border a cloth crosses.
 
 use std::f32::consts::TAU;
 

@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
-use bevy_math::{UVec2, Vec2, Vec3};
+use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
 
 use super::{
+    breeze::{self, Breeze},
     contact::{Phase, Touching},
     distance,
     half_space::{self, MovingHalfSpace},
@@ -26,6 +27,7 @@ use crate::{
     points::Points,
     settings::InstructionSet,
     topology::{Topology, lattice::Lattice},
+    wind::{Turbulence, WindShape},
 };
 
 /// The time of one kernel.
@@ -246,6 +248,21 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
     times.add("normals", 0, || {
         let found = SharedPoints::new(&mut found);
         normals::smooth_lattice(level, &lattice, &position, found, 0..n);
+    });
+    let turbulence = Turbulence {
+        speed: 1.0,
+        ..Turbulence::default()
+    };
+    let breeze = Breeze {
+        velocity: Vec3::X,
+        waves: Some(turbulence.waves(0.0, DVec3::ZERO)),
+        shape: WindShape::Everywhere,
+        falloff: 0.0,
+        to_own: Isometry3d::IDENTITY,
+    };
+    times.add("turbulence", 0, || {
+        let found = SharedPoints::new(&mut found);
+        breeze::add(level, &breeze, SECONDS, &position, found, 0..n * n);
     });
 }
 
