@@ -266,8 +266,9 @@ impl ClothStagesItem<'_, '_> {
         let seconds = step.seconds();
         let carries = self.particles.contacts.around.bodies.pushed(colliders);
         let still = self.particles.is_at_rest(self.sleep.speed, seconds);
+        let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
         // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
-        if carries || !(still || self.rest.around.is_some()) {
+        if carries || led || !(still || self.rest.around.is_some()) {
             self.rest.set_if_neq(ClothRest::default());
             return;
         }

@@ -31,6 +31,8 @@ pub struct AttachedParticles {
     order: ParticleOrder,
     /// Whether something changed that wakes the cloth.
     pub(super) disturbed: bool,
+    /// How far the point goes in this step that goes furthest \[m\].
+    pub(super) furthest: f32,
     /// Different whenever what is held changed.
     pub(super) revision: u64,
 }
@@ -103,6 +105,9 @@ impl Spring {
 /// A cloth that sleeps wakes where what holds it is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
 
+/// A point that goes no further in a step stands still \[m\].
+const STANDS: f32 = 1e-5;
+
 impl AttachedParticles {
     /// Whether nothing is attached.
     pub fn is_empty(&self) -> bool {
@@ -136,6 +141,11 @@ impl AttachedParticles {
     /// What it takes on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.bodies) + heap(&self.rigid) + heap(&self.springs)
+    }
+
+    /// Whether what it hangs on moves on, however slowly.
+    pub(crate) fn is_led(&self) -> bool {
+        self.furthest > STANDS
     }
 
     pub(crate) fn is_disturbed(&self) -> bool {
@@ -223,6 +233,7 @@ impl AttachedParticles {
             }
         }
         self.disturbed = changed || furthest > WAKES;
+        self.furthest = furthest;
         changed
     }
 

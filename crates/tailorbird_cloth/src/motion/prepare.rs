@@ -49,12 +49,17 @@ pub struct MotionState {
     /// Whether the targets move in this step.
     moving: bool,
     disturbed: bool,
+    /// How far the target goes in this step that goes furthest \[m\].
+    furthest: f32,
     /// Of the topology.
     revision: u64,
 }
 
 /// A cloth that sleeps wakes where a target is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
+
+/// A target that goes no further in a step stands still \[m\].
+const STANDS: f32 = 1e-5;
 
 /// Reads the motion constraints where they changed, and the targets at the end of this step.
 pub fn prepare_motion(
@@ -154,6 +159,7 @@ pub fn prepare_motion(
                 motion.stay();
             }
             motion.disturbed |= furthest > WAKES;
+            motion.furthest = furthest;
         }
         let held = &motion.held;
         let order = particles.order.clone();
@@ -191,6 +197,11 @@ impl MotionState {
         points.map(Points::memory_bytes).sum::<usize>()
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.held)
+    }
+
+    /// Whether the targets move on, however slowly.
+    pub(crate) fn is_led(&self) -> bool {
+        self.furthest > STANDS
     }
 
     pub(crate) fn is_disturbed(&self) -> bool {

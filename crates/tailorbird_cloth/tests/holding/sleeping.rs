@@ -62,6 +62,28 @@ fn it_wakes_when_its_target_moves_fast_or_creeps() {
 }
 
 #[test]
+fn it_follows_a_target_that_creeps() {
+    for held in holds() {
+        for enabled in [false, true] {
+            let (mut world, cloth, hand) = sleeping(held.clone(), None);
+            world.edit::<ClothSleep>(cloth, |sleep| sleep.enabled = enabled);
+            let places =
+                |world: &World| -> Vec<Vec3> { (0..64).map(|i| world.at(cloth, i)).collect() };
+            let before = places(&world);
+            // 1 mm/s up, for 5 s.
+            for _ in 0..300 {
+                world.edit::<Transform>(hand, |at| at.translation.y += 1e-3 / 60.0);
+                world.steps(1);
+            }
+            for (from, to) in before.iter().zip(places(&world)) {
+                let way = to - *from;
+                assert!(way.distance(Vec3::Y * 5e-3) < 5e-4, "{way} from {from}");
+            }
+        }
+    }
+}
+
+#[test]
 fn it_wakes_when_the_attachment_goes_or_another_comes() {
     for held in holds() {
         let (mut world, cloth, hand) = sleeping(held, None);
