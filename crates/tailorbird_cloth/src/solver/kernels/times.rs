@@ -297,7 +297,7 @@ mod tests {
     fn every_kernel_takes_time() {
         for instruction_set in [InstructionSet::Scalar, InstructionSet::Auto] {
             let times = measure(20, instruction_set);
-            assert_eq!(times.len(), 11);
+            assert_eq!(times.len(), 12);
             for time in times {
                 assert!(time.ns_per_particle > 0.0, "{time:?}");
                 let constraints = time.ns_per_constraint();
