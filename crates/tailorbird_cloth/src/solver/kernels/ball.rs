@@ -24,9 +24,11 @@ impl Solid for Ball {
 
     #[inline(always)]
     fn near<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Near<S> {
+        let length = p.dot(p).sqrt();
         Near {
-            distance: p.dot(p).sqrt() - self.radius,
+            distance: length - self.radius,
             out: p,
+            length,
         }
     }
 }
@@ -48,6 +50,7 @@ impl Solid for Ground {
         Near {
             distance: p.y - self.margin,
             out: V3::splat(simd, Vec3::Y),
+            length: S::f32s::splat(simd, 1.0),
         }
     }
 }

@@ -78,9 +78,11 @@ impl Solid for Capsule {
             ..p
         };
         let radius = S::f32s::splat(simd, self.radius) - ball * self.shrinks;
+        let length = out.dot(out).sqrt();
         Near {
-            distance: out.dot(out).sqrt() - radius,
+            distance: length - radius,
             out,
+            length,
         }
     }
 }

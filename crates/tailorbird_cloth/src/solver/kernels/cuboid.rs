@@ -49,6 +49,7 @@ impl Solid for Cuboid {
                 y: on_y.select(up, zero),
                 z: on_z.select(front, zero),
             },
+            length: S::f32s::splat(simd, 1.0),
         }
     }
 }

@@ -29,7 +29,8 @@ impl Solid for Cylinder {
         let zero = S::f32s::splat(simd, 0.0);
         let (y, up) = away(simd, p.y);
         let end = y - self.half_height;
-        let side = (p.x * p.x + p.z * p.z).sqrt() - self.radius;
+        let from_axis = (p.x * p.x + p.z * p.z).sqrt();
+        let side = from_axis - self.radius;
         let on_end = end.simd_ge(side);
         Near {
             distance: end.max(side),
@@ -38,6 +39,7 @@ impl Solid for Cylinder {
                 y: on_end.select(up, zero),
                 z: on_end.select(zero, p.z),
             },
+            length: on_end.select(S::f32s::splat(simd, 1.0), from_axis),
         }
     }
 }

@@ -65,8 +65,13 @@ fn collide_all_with<S: Simd>(
                 let start = particles.previous.load_at(simd, window, 0) - from;
                 let depth = (margin - height).max(zero);
                 let surface = V3::splat(simd, Vec3::ZERO);
-                let path =
-                    contacts.resolve(simd, [start, end], normal, depth, plane.friction, surface);
+                let path = contacts.resolve(
+                    simd,
+                    touching,
+                    [start, end],
+                    (normal, depth),
+                    (plane.friction, surface),
+                );
                 particles.store(
                     simd,
                     window,

@@ -77,6 +77,8 @@ impl Solid for Seen<'_> {
         Near {
             distance: out.dot(p) - offset - self.margin,
             out,
+            // Unit vectors, or nothing.
+            length: out.dot(out),
         }
     }
 }

@@ -178,6 +178,7 @@ impl Solid for Planes<'_> {
         Near {
             distance: nearest.distance - self.margin,
             out: nearest.out,
+            length: S::f32s::splat(simd, 1.0),
         }
     }
 }

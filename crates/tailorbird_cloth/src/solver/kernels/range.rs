@@ -5,7 +5,7 @@ use std::ops::Range;
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{Reading, WIDEST, each_window};
+use super::lanes::{Reading, each_window};
 use crate::points::Points;
 
 /// The lowest and the highest of these numbers and of `low` and `high`; NaN does not count.
@@ -63,34 +63,19 @@ fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
     }
     let mut lowest = S::f32s::splat(simd, f32::INFINITY);
     let mut highest = S::f32s::splat(simd, f32::NEG_INFINITY);
-    for values in [a, b] {
-        // The last vector overlaps the one before.
-        let last = &values[values.len() - lanes..];
-        for values in values.chunks_exact(lanes).chain(std::iter::once(last)) {
-            let values = S::f32s::from_slice(simd, values);
-            lowest = lowest.min(values);
-            highest = highest.max(values);
-        }
+    for (a, b) in a.chunks_exact(lanes).zip(b.chunks_exact(lanes)) {
+        let (a, b) = (S::f32s::from_slice(simd, a), S::f32s::from_slice(simd, b));
+        lowest = lowest.min(a.min(b));
+        highest = highest.max(a.max(b));
     }
-    let (mut low, mut high) = ([f32::INFINITY; WIDEST], [f32::NEG_INFINITY; WIDEST]);
-    low[..lanes].copy_from_slice(lowest.as_slice());
-    high[..lanes].copy_from_slice(highest.as_slice());
-    // By halves: one after the other would take as long as all the rest.
-    halve::<8>(&mut low, &mut high);
-    halve::<4>(&mut low, &mut high);
-    halve::<2>(&mut low, &mut high);
-    halve::<1>(&mut low, &mut high);
-    (low[0], high[0])
-}
-
-/// Leaves the lowest and the highest of two halves in the first one.
-#[inline(always)]
-fn halve<const HALF: usize>(low: &mut [f32; WIDEST], high: &mut [f32; WIDEST]) {
-    for k in 0..HALF {
-        let (a, b) = (low[k + HALF], high[k + HALF]);
-        low[k] = if a < low[k] { a } else { low[k] };
-        high[k] = if b > high[k] { b } else { high[k] };
+    if a.len() % lanes != 0 {
+        // The last vectors overlap the ones before.
+        let [a, b] = [a, b].map(|values| &values[values.len() - lanes..]);
+        let (a, b) = (S::f32s::from_slice(simd, a), S::f32s::from_slice(simd, b));
+        lowest = lowest.min(a.min(b));
+        highest = highest.max(a.max(b));
     }
+    (lowest.reduce_min(), highest.reduce_max())
 }
 
 /// Whether none of these numbers is infinite or NaN: 0 · v is 0 for finite ones alone.

@@ -12,7 +12,7 @@ use bevy_math::{Mat3, Vec3};
 use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
-    contact::{Touching, unit_or_up},
+    contact::{Touching, unit},
     lanes::{V3, Window, each_window},
 };
 
@@ -41,8 +41,10 @@ pub struct Motion {
 pub(crate) struct Near<S: Simd> {
     /// Distance from the surface, negative inside \[m\].
     pub distance: S::f32s,
-    /// Where the surface is nearest, points out of it; of any length.
+    /// Where the surface is nearest, points out of it.
     pub out: V3<S>,
+    /// Length of `out`.
+    pub length: S::f32s,
 }
 
 /// A solid around its origin, margin included.
@@ -103,6 +105,7 @@ fn meet<S: Simd, Q: Solid>(
                 near.out.x.as_mut_slice()[k] = out.x;
                 near.out.y.as_mut_slice()[k] = out.y;
                 near.out.z.as_mut_slice()[k] = out.z;
+                near.length.as_mut_slice()[k] = 1.0;
             }
         }
     }
@@ -120,7 +123,7 @@ pub(super) fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
 fn near_one<Q: Solid>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
     let simd = Fallback::new();
     let near = solid.near(simd, Window::single(i), V3::splat(simd, point));
-    let out = unit_or_up(simd, near.out);
+    let out = unit(simd, near.out, near.length);
     (near.distance.as_slice()[0], lane(out, 0))
 }
 
@@ -218,7 +221,7 @@ fn collide_all_with<S: Simd, Q: Solid>(
             if !touching.any_true() {
                 return;
             }
-            let normal = turned(motion.axes, unit_or_up(simd, near.out));
+            let normal = turned(motion.axes, unit(simd, near.out, near.length));
             let touching =
                 free & (near.distance.simd_lt(zero) | contacts.along(simd, normal, near.distance));
             if !touching.any_true() {
@@ -227,7 +230,13 @@ fn collide_all_with<S: Simd, Q: Solid>(
             any = true;
             let depth = (zero - near.distance).max(zero);
             let still = V3::splat(simd, Vec3::ZERO);
-            let path = contacts.resolve(simd, [start, end], normal, depth, motion.friction, still);
+            let path = contacts.resolve(
+                simd,
+                touching,
+                [start, end],
+                (normal, depth),
+                (motion.friction, still),
+            );
             let mut moved = path[0] - start;
             if turns {
                 moved = turned(motion.turn.transpose(), moved);

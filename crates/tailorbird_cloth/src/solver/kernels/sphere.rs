@@ -6,12 +6,12 @@ use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    contact::{Path, Touching, unit_or_up},
+    contact::{Path, Touching, unit_of_about},
     lanes::{Factor, V3, each_window},
 };
 use crate::points::Points;
 
-/// How far inside a particle on the surface may seem to be, as a part of the radius squared.
+/// How far from the surface a particle on it may seem to be, as a part of the radius squared.
 const ROUNDING: f32 = 1e-4;
 
 /// A sphere during one substep, in the frame of the particles.
@@ -49,8 +49,14 @@ impl MovingSphere {
         let through =
             approach < 0.0 && -approach < t2 && start2 * t2 - approach * approach < r2 * t2;
         let normal = if from_outside && approach < 0.0 && (inside || through) {
-            let root = (approach * approach - t2 * (start2 - r2)).max(0.0).sqrt();
-            let hit = path.from + travel * ((-approach - root) / t2).max(0.0);
+            // One that is on the surface enters where it is.
+            let time = if start2 > r2 * (1.0 + ROUNDING) {
+                let root = (approach * approach - t2 * (start2 - r2)).max(0.0).sqrt();
+                ((-approach - root) / t2).max(0.0)
+            } else {
+                0.0
+            };
+            let hit = path.from + travel * time;
             let normal = hit.normalize_or(Vec3::Y);
             let sliding = (path.to - hit).reject_from_normalized(normal);
             path.to += sliding.clamp_length_max(self.radius) - sliding;
@@ -91,6 +97,9 @@ fn collide_all_with<S: Simd>(
     let radius = S::f32s::splat(simd, sphere.radius);
     let r2 = radius * radius;
     let surely_inside = r2 * (1.0 - ROUNDING);
+    let surely_outside = r2 * (1.0 + ROUNDING);
+    let rotation = V3::splat(simd, sphere.rotation);
+    let turns = sphere.rotation != Vec3::ZERO;
     let (center_from, center_to) = (V3::splat(simd, sphere.from), V3::splat(simd, sphere.to));
     let mut any = false;
     each_window(
@@ -114,19 +123,35 @@ fn collide_all_with<S: Simd>(
             let touching = free & (swept | inside | contacts.stays(simd, end, radius));
             if touching.any_true() {
                 any = true;
-                let root = (approach * approach - t2 * (start2 - r2)).max(zero).sqrt();
-                let time = swept.select(((zero - approach - root) / t2).max(zero), zero);
-                let hit = start + Factor(time) * travel;
-                let normal = unit_or_up(simd, hit.select(swept, end));
-                let beyond = end - hit;
-                let sliding = beyond - Factor(normal.dot(beyond)) * normal;
-                let length = sliding.dot(sliding).sqrt();
-                let cut = length.simd_gt(radius).select(radius / length - one, zero);
-                end = end + Factor(swept.select(cut, zero)) * sliding;
+                // Most are on the surface and go no long way: roots and quotients are found for the others alone.
+                let mut hit = start;
+                let above = touching & swept & start2.simd_gt(surely_outside);
+                if above.any_true() {
+                    let root = (approach * approach - t2 * (start2 - r2)).max(zero).sqrt();
+                    let time = ((zero - approach - root) / t2).max(zero);
+                    hit = start + Factor(above.select(time, zero)) * travel;
+                }
+                let normal = unit_of_about(simd, hit.select(swept, end), sphere.radius, touching);
+                let long = touching & swept & t2.simd_gt(r2);
+                if long.any_true() {
+                    let beyond = end - hit;
+                    let sliding = beyond - Factor(normal.dot(beyond)) * normal;
+                    let length = sliding.dot(sliding).sqrt();
+                    let cut = length.simd_gt(radius).select(radius / length - one, zero);
+                    end = end + Factor(long.select(cut, zero)) * sliding;
+                }
                 let depth = (radius - normal.dot(end)).max(zero);
-                let surface = Factor(radius) * V3::splat(simd, sphere.rotation).cross(normal);
-                let path =
-                    contacts.resolve(simd, [start, end], normal, depth, sphere.friction, surface);
+                let mut surface = V3::splat(simd, Vec3::ZERO);
+                if turns {
+                    surface = Factor(radius) * rotation.cross(normal);
+                }
+                let path = contacts.resolve(
+                    simd,
+                    touching,
+                    [start, end],
+                    (normal, depth),
+                    (sphere.friction, surface),
+                );
                 particles.store(
                     simd,
                     window,

@@ -83,6 +83,7 @@ impl Solid for Terrain<'_> {
                 y: one,
                 z: zero - b,
             },
+            length,
         }
     }
 }
