@@ -8,6 +8,8 @@
 mod common;
 
 mod depth_picking;
+mod light;
+mod motion;
 mod offscreen;
 mod pictures;
 mod writes;

@@ -162,6 +162,15 @@ impl Offscreen {
 
     /// What was rendered to the target, while time stands still.
     pub fn picture(&mut self) -> Image {
+        let strategy = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
+        let running = std::mem::replace(&mut *self.app.world_mut().resource_mut(), strategy);
+        let picture = self.picture_in_motion();
+        self.app.insert_resource(running);
+        picture
+    }
+
+    /// What was rendered to the target, while time goes on.
+    pub fn picture_in_motion(&mut self) -> Image {
         let picture: Arc<Mutex<Option<Image>>> = Arc::default();
         let sender = picture.clone();
         self.app
@@ -170,12 +179,9 @@ impl Offscreen {
             .observe(move |captured: On<ScreenshotCaptured>| {
                 *sender.lock().expect("not poisoned") = Some(captured.image.clone());
             });
-        let strategy = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
-        let running = std::mem::replace(&mut *self.app.world_mut().resource_mut(), strategy);
         for _ in 0..100 {
             self.update(1);
             if let Some(picture) = picture.lock().expect("not poisoned").take() {
-                self.app.insert_resource(running);
                 return picture;
             }
         }

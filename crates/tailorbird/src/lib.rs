@@ -37,6 +37,7 @@
 //! | [`cloth::inertia`] | a cloth on something that moves: what it feels, teleports, speed limits |
 //! | [`cloth::collider`] | what a cloth collides with: shapes, layers, bodies |
 //! | `tailorbird_avian`, `tailorbird_rapier` | bodies of physics engines |
+//! | [`motion_vectors`] | temporal antialiasing and motion blur |
 //! | [`fabric`], [`cloth::material`] | what cloth is made of: how it moves, how it looks |
 //! | [`cloth::wind`] | air: gusts, turbulence, zones |
 //! | [`cloth::solver`], [`cloth::settings`], [`cloth::sleep`] | accuracy and what it costs |
@@ -50,6 +51,7 @@ pub mod diagnostics;
 pub mod drag;
 pub mod fabric;
 pub mod mesh;
+pub mod motion_vectors;
 pub mod picking;
 pub mod plugins;
 pub mod sphere_controls;
@@ -68,6 +70,7 @@ pub mod prelude {
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
             ClothUnseen, ColorChannel, MeshParts, MeshPins,
         },
+        motion_vectors::ClothMotionVectorsPlugin,
         picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
         plugins::ClothPlugins,
         sphere_controls::{SphereControls, SphereControlsPlugin},

@@ -25,7 +25,7 @@ pub struct ClothMesh {
     /// Of the topology it was built from.
     pub(super) revision: u64,
     pub(super) shading: ClothShading,
-    pub(super) parts: Vec<ClothMeshPart>,
+    pub(crate) parts: Vec<ClothMeshPart>,
 }
 
 impl ClothMesh {
@@ -38,7 +38,7 @@ impl ClothMesh {
 /// One mesh of a cloth.
 pub struct ClothMeshPart {
     pub(super) entity: Entity,
-    pub(super) handle: Handle<Mesh>,
+    pub(crate) handle: Handle<Mesh>,
     pub(super) follow: Follow,
     /// Its vertices; absent before they are known, and where the mesh has no place for them.
     pub(super) packed: Option<Packed>,
@@ -51,7 +51,7 @@ pub struct ClothMeshPart {
     /// Where the vertices were to go when they were computed last.
     pub(super) went: Option<ClothMeshWrite>,
     /// Whether the last change of the asset was ours.
-    pub(super) own_change: bool,
+    pub(crate) own_change: bool,
     /// Whether others have changed the asset.
     pub(super) outdated: bool,
 }
@@ -178,7 +178,7 @@ pub(super) fn build_cloth_mesh(
 }
 
 /// Makes the materials of cloths two-sided, but those of meshes whose backs have triangles of their own.
-pub(super) fn make_materials_two_sided(
+pub(crate) fn make_materials_two_sided(
     shown: Query<
         (&ClothMeshOf, &MeshMaterial3d<StandardMaterial>),
         Or<(

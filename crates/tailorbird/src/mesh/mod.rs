@@ -8,10 +8,12 @@ mod packed;
 mod parts;
 mod pins;
 mod slab;
+mod sorting;
 mod tangents;
 mod vertices;
 mod write;
 
+pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
 pub use from_mesh::ClothFromMesh;
 pub use parts::MeshParts;
@@ -26,6 +28,8 @@ use bevy_mesh::Mesh;
 use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
+
+use crate::motion_vectors::add_previous_positions;
 
 /// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
 /// entities have the same mesh.
@@ -59,6 +63,10 @@ pub struct ClothMeshSettings {
     pub write: ClothMeshWrite,
     /// What happens to meshes that no camera and no light with shadows sees.
     pub unseen: ClothUnseen,
+    /// Whether vertices carry their place in the frame before, as
+    /// [`ATTRIBUTE_PREVIOUS_POSITION`](crate::motion_vectors::ATTRIBUTE_PREVIOUS_POSITION).
+    /// [`ClothMotionVectorsPlugin`](crate::motion_vectors::ClothMotionVectorsPlugin) sets it.
+    pub motion_vectors: bool,
 }
 
 impl Default for ClothMeshSettings {
@@ -67,6 +75,7 @@ impl Default for ClothMeshSettings {
             interpolate: true,
             write: ClothMeshWrite::default(),
             unseen: ClothUnseen::default(),
+            motion_vectors: false,
         }
     }
 }
@@ -110,6 +119,7 @@ impl Plugin for ClothMeshPlugin {
                 (
                     (
                         build::build_cloth_mesh,
+                        add_previous_positions,
                         write::watch_meshes,
                         write::bound_cloth_meshes,
                         build::make_materials_two_sided

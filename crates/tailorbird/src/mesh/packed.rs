@@ -2,6 +2,8 @@
 
 use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 
+use crate::motion_vectors::ATTRIBUTE_PREVIOUS_POSITION;
+
 /// Numbers of a position and of a normal, and of a tangent.
 const VECTOR: usize = 3;
 const TANGENT: usize = 4;
@@ -16,11 +18,23 @@ pub(super) struct Packed {
     pub position: usize,
     pub normal: usize,
     pub tangent: Option<usize>,
+    /// The positions of the frame before, where the mesh has a place for them.
+    previous: Option<Previous>,
     /// Whether these are all attributes, in the order that the renderer has them in.
     pub complete: bool,
     /// Rises when the other attributes change.
     pub version: u32,
     attributes: Vec<MeshVertexAttribute>,
+}
+
+/// Where vertices were drawn.
+struct Previous {
+    /// Where that position starts in a vertex.
+    place: usize,
+    /// None where they were not drawn in the frame before.
+    positions: Vec<f32>,
+    /// Whether any was elsewhere.
+    moved: bool,
 }
 
 fn attributes(mesh: &Mesh) -> impl Iterator<Item = (&MeshVertexAttribute, &VertexAttributeValues)> {
@@ -38,6 +52,7 @@ impl Packed {
                 Mesh::ATTRIBUTE_POSITION,
                 Mesh::ATTRIBUTE_NORMAL,
                 Mesh::ATTRIBUTE_TANGENT,
+                ATTRIBUTE_PREVIOUS_POSITION,
             ];
             known.iter().any(|own| own.id == attribute.id)
         };
@@ -57,6 +72,11 @@ impl Packed {
         let position = place_of(Mesh::ATTRIBUTE_POSITION, VECTOR)?;
         let normal = place_of(Mesh::ATTRIBUTE_NORMAL, VECTOR)?;
         let tangent = place_of(Mesh::ATTRIBUTE_TANGENT, TANGENT);
+        let previous = place_of(ATTRIBUTE_PREVIOUS_POSITION, VECTOR).map(|place| Previous {
+            place,
+            positions: Vec::new(),
+            moved: false,
+        });
         let mut all = vec![0.0; stride * mesh.count_vertices()];
         for (attribute, values, place) in &places {
             let own = values.get_bytes().chunks_exact(4 * words(attribute));
@@ -72,6 +92,7 @@ impl Packed {
             position,
             normal,
             tangent,
+            previous,
             complete,
             version,
             attributes: attributes(mesh).map(|(attribute, _)| *attribute).collect(),
@@ -85,13 +106,56 @@ impl Packed {
         same.eq(self.attributes.iter().map(|own| (own.id, count)))
     }
 
-    /// Writes positions, normals and tangents into a mesh.
+    /// Notes where vertices are drawn now, and writes where they were drawn before.
+    pub fn keep_positions(&mut self) {
+        let Some(Previous {
+            place,
+            positions,
+            moved,
+        }) = &mut self.previous
+        else {
+            return;
+        };
+        let vertices = self.words.chunks_exact_mut(self.stride);
+        if positions.is_empty() {
+            positions.resize(VECTOR * vertices.len(), f32::NAN);
+        }
+        *moved = false;
+        for (vertex, before) in vertices.zip(positions.as_chunks_mut::<VECTOR>().0) {
+            let now = [0, 1, 2].map(|axis| vertex[self.position + axis]);
+            let was = if before[0].is_nan() { now } else { *before };
+            *moved |= was != now;
+            vertex[*place..*place + VECTOR].copy_from_slice(&was);
+            *before = now;
+        }
+    }
+
+    /// Whether vertices were elsewhere in the frame before, which is to be taken back when they stay.
+    pub fn moved(&self) -> bool {
+        self.previous
+            .as_ref()
+            .is_some_and(|previous| previous.moved)
+    }
+
+    /// Forgets where vertices were drawn: they are not, in this frame.
+    pub fn forget_positions(&mut self) {
+        if let Some(previous) = &mut self.previous {
+            previous.positions.clear();
+        }
+    }
+
+    /// Writes what follows the cloth into a mesh.
     pub fn write_to(&self, mesh: &mut Mesh) {
         let vertices = || self.words.chunks_exact(self.stride);
+        let previous = self.previous.as_ref().map(|previous| previous.place);
         for (attribute, place) in [
-            (Mesh::ATTRIBUTE_POSITION, self.position),
-            (Mesh::ATTRIBUTE_NORMAL, self.normal),
+            (Mesh::ATTRIBUTE_POSITION, Some(self.position)),
+            (Mesh::ATTRIBUTE_NORMAL, Some(self.normal)),
+            (ATTRIBUTE_PREVIOUS_POSITION, previous),
         ] {
+            let Some(place) = place else {
+                continue;
+            };
             if let Ok(Some(VertexAttributeValues::Float32x3(values))) =
                 mesh.try_attribute_mut_option(attribute)
             {

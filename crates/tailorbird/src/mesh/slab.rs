@@ -66,6 +66,7 @@ pub(super) fn finish(app: &mut App) {
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
+    super::sorting::finish(render_app);
     render_app
         .init_resource::<ShownVertices>()
         .add_systems(

@@ -131,6 +131,9 @@ pub(super) fn follow_cloth(
         };
         for part in &mut cloth_mesh.parts {
             if part.in_asset && !is_seen(part) {
+                if let Some(packed) = &mut part.packed {
+                    packed.forget_positions();
+                }
                 continue;
             }
             // Others may have changed an asset that was written in each frame.
@@ -138,7 +141,10 @@ pub(super) fn follow_cloth(
             part.outdated |= elsewhere && part.in_asset;
             let mesh = meshes.get(&part.handle);
             let changed = mesh.is_some_and(|mesh| part.check(mesh)) || elsewhere;
-            if (moves || changed || part.shows != now) && part.packed.is_some() {
+            let Some(packed) = &part.packed else {
+                continue;
+            };
+            if moves || changed || part.shows != now || packed.moved() {
                 part.shows = now;
                 jobs.push((drawn, part));
             }
@@ -194,6 +200,7 @@ impl ClothMeshPart {
             && packed.words.len() == self.follow.len() * packed.stride
         {
             self.follow.write(drawn, packed);
+            packed.keep_positions();
             self.fresh = true;
         }
     }
