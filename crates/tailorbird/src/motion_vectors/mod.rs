@@ -14,7 +14,7 @@
 //!
 //! A camera has motion vectors where it has Bevy's `MotionVectorPrepass`, which `TemporalAntiAliasing` and `MotionBlur` bring along.
 //!
-//! It costs 12 bytes for each vertex, and the time to write them: about a fifth more than without. Materials of cloths are not
+//! It costs 12 bytes for each vertex, and the time to write them. Materials of cloths are not
 //! drawn in one batch with those of other things any more. [`ClothMeshSettings::motion_vectors`] switches it off and on.
 //!
 //! The entity's `MeshMaterial3d<StandardMaterial>` gives way to one of [`ClothMotionMaterial`], whose `base` follows the

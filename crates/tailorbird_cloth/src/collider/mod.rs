@@ -24,15 +24,15 @@
 //! | shape | margin | cost of a particle in contact, that with a half-space being 1 |
 //! | --- | --- | --- |
 //! | half-space | exact | 1 |
-//! | sphere, capsule, tapered capsule | exact | 1.7 to 2.5 |
-//! | cylinder | sharp edges | 2 |
-//! | cuboid | sharp edges | 1.6 |
-//! | convex hull | sharp edges, bevelled where they are acute | grows with its faces: 30 for a hull of 200 points |
+//! | sphere, capsule, tapered capsule | exact | 1.8 to 2 |
+//! | cylinder | sharp edges | 2.7 |
+//! | cuboid | sharp edges | 1.7 |
+//! | convex hull | sharp edges, bevelled where they are acute | grows with its faces: 38 for a hull of 200 points |
 //! | height field | along the normal | 7 |
 //! | triangle mesh | along the normal | 2 while nothing moves, a search where something does |
 //! | compound | as its parts | that of its parts |
 //!
-//! The numbers are from `bench -- colliders` (128² particles, AVX-512; a half-space takes 0.57 of what the constraints take, which is 8
+//! The numbers are from `bench -- colliders` (128² particles, AVX-512; a half-space takes 0.45 of what the constraints take, which is 7
 //! to 13 ns for each particle and substep on a shared machine).
 //!
 //! The distance kept is the margin of the collider and [`ClothMaterial::thickness`](crate::material::ClothMaterial::thickness)
