@@ -10,13 +10,16 @@ use tailorbird::{prelude::*, sphere_controls::move_spheres};
 
 use super::{
     camera::OrbitCamera,
+    compare::{self, Beside},
     crates::CratesPlugin,
+    gamepad::GamepadPlugin,
     garment,
     moving::MovingPlugin,
     scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind, SceneSphere, look, spawn_scene},
     settings::DemoSettings,
     shortcuts::use_shortcuts,
     stage::StagePlugin,
+    touch::TouchPlugin,
 };
 
 /// The demo without window and panel: stage, scenes, settings, keys. Add it after Bevy's plugins and `ClothPlugins`.
@@ -34,60 +37,77 @@ pub struct ApplySettings;
 
 impl Plugin for DemoPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((self.stage.clone(), MovingPlugin, CratesPlugin))
-            .insert_resource(self.settings.clone())
-            .add_systems(
-                Update,
-                (use_shortcuts.before(ApplySettings), garment::add_mipmaps),
+        app.add_plugins((
+            self.stage.clone(),
+            MovingPlugin,
+            CratesPlugin,
+            GamepadPlugin,
+            TouchPlugin,
+        ))
+        .insert_resource(self.settings.clone())
+        .add_systems(
+            Update,
+            (use_shortcuts.before(ApplySettings), garment::add_mipmaps),
+        )
+        .add_systems(
+            Update,
+            (
+                show_scene,
+                apply_cloth,
+                apply_sphere,
+                apply_solver,
+                apply_fabric,
+                apply_wireframe,
+                apply_gizmos,
+                apply_picking,
             )
-            .add_systems(
-                Update,
-                (
-                    show_scene,
-                    apply_cloth,
-                    apply_sphere,
-                    apply_solver,
-                    apply_fabric,
-                    apply_wireframe,
-                    apply_gizmos,
-                    apply_picking,
-                )
-                    .chain()
-                    .in_set(ApplySettings)
-                    .run_if(resource_changed::<DemoSettings>),
-            )
-            .add_systems(FixedUpdate, keep_above_ground.after(move_spheres));
+                .chain()
+                .in_set(ApplySettings)
+                .run_if(resource_changed::<DemoSettings>),
+        )
+        .add_systems(FixedUpdate, keep_above_ground.after(move_spheres));
     }
 }
 
-/// Clears the old scene away and spawns the new one.
+/// Clears the old scene away and spawns the new one; both cloths start together.
 fn show_scene(
     mut commands: Commands,
     settings: Res<DemoSettings>,
-    mut shown: Local<Option<(SceneKind, u32)>>,
-    old: Query<Entity, With<SceneEntity>>,
+    mut shown: Local<Option<(SceneKind, u32, bool)>>,
+    old: Query<(Entity, Has<Beside>), With<SceneEntity>>,
     mut cameras: Query<&mut OrbitCamera>,
     mut assets: SceneAssets,
 ) {
-    let wanted = (settings.scene, settings.resets);
-    if *shown == Some(wanted) {
+    let wanted = (settings.scene, settings.resets, settings.beside);
+    let before = shown.replace(wanted);
+    if before == Some(wanted) {
         return;
     }
-    // Some are below others, and go with them.
-    for entity in &old {
-        commands.entity(entity).try_despawn();
-    }
-    spawn_scene(&mut commands, &settings, &mut assets);
-    if shown.is_none_or(|(scene, _)| scene != settings.scene) {
-        for mut camera in &mut cameras {
-            let covered = camera.covered;
-            *camera = OrbitCamera {
-                covered,
-                ..settings.scene.view()
-            };
+    let stays = before == Some((settings.scene, settings.resets, true));
+    for (entity, beside) in &old {
+        if beside || !stays {
+            // Some are below others, and go with them.
+            commands.entity(entity).try_despawn();
         }
     }
-    *shown = Some(wanted);
+    if !stays {
+        spawn_scene(&mut commands, &settings, &mut assets);
+    }
+    if settings.beside {
+        compare::spawn_beside(&mut commands, &settings, &mut assets);
+    }
+    let looks = (settings.scene, settings.beside);
+    if before.is_none_or(|(scene, _, beside)| (scene, beside) != looks) {
+        let view = if settings.beside {
+            compare::view(settings.scene)
+        } else {
+            settings.scene.view()
+        };
+        for mut camera in &mut cameras {
+            let covered = camera.covered;
+            *camera = OrbitCamera { covered, ..view };
+        }
+    }
 }
 
 fn apply_cloth(
@@ -100,14 +120,19 @@ fn apply_cloth(
             &mut ClothSolver,
             &mut ClothShading,
             &mut ClothPins,
+            Has<Beside>,
         ),
         With<SceneCloth>,
     >,
 ) {
     drag.radius = settings.grab_radius;
-    for (mut cloth, mut material, mut solver, mut shading, mut pins) in &mut cloths {
+    for (mut cloth, mut material, mut solver, mut shading, mut pins, beside) in &mut cloths {
         material.set_if_neq(settings.material);
-        solver.set_if_neq(settings.solver);
+        solver.set_if_neq(if beside {
+            settings.other_solver()
+        } else {
+            settings.solver
+        });
         shading.set_if_neq(settings.shading);
         let shape = settings.scene.cloth(settings.resolution);
         if shape.is_some_and(|shape| cloth.set_if_neq(shape)) {

@@ -1,5 +1,5 @@
-//! A camera that goes round a point: the right mouse button turns, the middle one moves, the wheel comes closer. The
-//! left button is left to the cloth.
+//! A camera that goes round a point: the right mouse button turns, the middle one moves, the wheel comes closer, and
+//! keys do. The left button is left to the cloth.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -17,7 +17,7 @@ impl Plugin for OrbitCameraPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             RunFixedMainLoop,
-            (turn_by_mouse, place_cameras)
+            (turn_by_mouse, turn_by_keys, place_cameras)
                 .chain()
                 .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
         );
@@ -131,6 +131,43 @@ fn turn_by_mouse(
                 let step = camera.rotation() * step;
                 camera.focus += step;
             }
+        }
+    }
+}
+
+/// W, A, S and D turn, + and − zoom.
+fn turn_by_keys(
+    keys: Option<Res<ButtonInput<KeyCode>>>,
+    time: Res<Time<Real>>,
+    mut cameras: Query<&mut OrbitCamera>,
+) {
+    /// [rad/s].
+    const TURN: f32 = 1.2;
+    /// Notches of the wheel [1/s].
+    const ZOOM: f32 = 6.0;
+    let Some(keys) = keys else {
+        return;
+    };
+    let axis = |more: &[KeyCode], less: &[KeyCode]| {
+        let pressed = |keys_of: &[KeyCode]| f32::from(keys.any_pressed(keys_of.iter().copied()));
+        (pressed(more) - pressed(less)) * time.delta_secs()
+    };
+    let turn = TURN
+        * Vec2::new(
+            axis(&[KeyCode::KeyD], &[KeyCode::KeyA]),
+            axis(&[KeyCode::KeyW], &[KeyCode::KeyS]),
+        );
+    let closer = ZOOM
+        * axis(
+            &[KeyCode::Equal, KeyCode::NumpadAdd],
+            &[KeyCode::Minus, KeyCode::NumpadSubtract],
+        );
+    for mut camera in &mut cameras {
+        if turn != Vec2::ZERO {
+            camera.turn(turn.x, turn.y);
+        }
+        if closer != 0.0 {
+            camera.zoom(closer);
         }
     }
 }

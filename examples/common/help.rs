@@ -1,7 +1,7 @@
-//! What the mouse and the keys do.
+//! What mouse, keys, fingers and gamepad do.
 
 /// Every key and button with what it does.
-pub const CONTROLS: [(&str, &str); 12] = [
+pub const CONTROLS: [(&str, &str); 22] = [
     ("left mouse button", "drag the cloth"),
     ("wheel while dragging", "nearer, farther"),
     ("P while dragging", "pin what is held"),
@@ -11,15 +11,25 @@ pub const CONTROLS: [(&str, &str); 12] = [
     ("right mouse button", "turn the camera"),
     ("middle mouse button", "move the camera"),
     ("wheel", "zoom"),
-    ("1 to 8", "scenes"),
+    ("W A S D, + and −", "turn the camera, zoom"),
+    ("1 to 8, [ and ]", "scenes, previous and next"),
     ("R", "reset"),
     ("Space, N", "pause, single step"),
+    ("C", "the other solver beside"),
+    ("H", "hide or show the panel"),
+    ("F5, F9", "save, load the settings"),
+    ("F12", "save a picture"),
+    ("Tab, Shift Tab", "through the panel"),
+    ("Space, arrows, Esc", "… press, change, leave"),
+    ("one finger, two", "drag; turn and zoom"),
+    ("sticks, triggers", "ball and camera, zoom"),
+    ("south, west, shoulders", "pause, reset, scenes"),
 ];
 
 /// As text, one line each, indented.
 pub fn text() -> String {
     CONTROLS
         .iter()
-        .map(|(control, action)| format!("  {control:<22}{action}\n"))
+        .map(|(control, action)| format!("  {control:<24}{action}\n"))
         .collect()
 }

@@ -4,23 +4,34 @@
 
 pub mod actor;
 pub mod apply;
+pub mod ask;
 pub mod camera;
 pub mod character;
+pub mod clock;
+pub mod compare;
 pub mod crates;
+pub mod gamepad;
 pub mod garment;
 pub mod graphics;
 pub mod help;
 pub mod moving;
+pub mod notices;
 pub mod offscreen;
 pub mod panel;
+pub mod photo;
 pub mod plot;
 pub mod props;
+pub mod saved;
+pub mod scene_list;
 pub mod scenes;
 pub mod script;
 pub mod settings;
+pub mod settings_file;
 pub mod shortcuts;
 pub mod stage;
 pub mod status;
+pub mod thumbnails;
+pub mod touch;
 pub mod window;
 
 use std::process::ExitCode;

@@ -8,12 +8,24 @@ use tailorbird::prelude::*;
 pub struct Moving {
     path: fn(f32) -> Transform,
     seconds: f32,
+    /// Added to the path [m].
+    pub offset: Vec3,
 }
 
 impl Moving {
     /// Along this path.
     pub fn along(path: fn(f32) -> Transform) -> Self {
-        Self { path, seconds: 0.0 }
+        Self {
+            path,
+            seconds: 0.0,
+            offset: Vec3::ZERO,
+        }
+    }
+
+    /// Where it is after so many seconds.
+    fn place(&self, seconds: f32) -> Transform {
+        let place = (self.path)(seconds);
+        place.with_translation(place.translation + self.offset)
     }
 }
 
@@ -39,7 +51,7 @@ fn go_on(
         if runs {
             thing.seconds += time.delta_secs();
         }
-        *transform = (thing.path)(thing.seconds);
+        *transform = thing.place(thing.seconds);
     }
 }
 
@@ -54,6 +66,6 @@ fn draw_between_steps(
         (1.0 - time.overstep_fraction()) * time.timestep().as_secs_f32()
     };
     for (thing, mut transform) in &mut things {
-        *transform = (thing.path)((thing.seconds - late).max(0.0));
+        *transform = thing.place((thing.seconds - late).max(0.0));
     }
 }

@@ -22,6 +22,7 @@ use bevy::{
     window::{ExitCondition, WindowResolution},
     winit::WinitPlugin,
 };
+use image::RgbImage;
 use tailorbird::{fabric::FabricLibrary, prelude::*};
 
 use super::{
@@ -102,11 +103,19 @@ pub struct Offscreen {
     asked: usize,
 }
 
-/// The pictures that were saved, and the errors.
+/// The pictures that came, and the errors.
 #[derive(Resource, Default)]
 struct Album {
     saved: Vec<PathBuf>,
+    /// With the number that each one was asked for as.
+    kept: Vec<(usize, RgbImage)>,
     errors: Vec<String>,
+}
+
+impl Album {
+    fn count(&self) -> usize {
+        self.saved.len() + self.kept.len() + self.errors.len()
+    }
 }
 
 impl Offscreen {
@@ -170,33 +179,69 @@ impl Offscreen {
 
     /// Goes on by a frame [s], and saves the picture of it.
     pub fn take_picture(&mut self, path: &Path, seconds: f32) {
-        self.actor.act(self.app.world_mut(), self.time, seconds);
         let path = path.to_owned();
+        self.capture(seconds, move |album, picture| match picture.save(&path) {
+            Ok(()) => album.saved.push(path.clone()),
+            Err(error) => album.errors.push(format!("{}: {error}", path.display())),
+        });
+    }
+
+    /// Goes on by a frame [s], and keeps the picture of it for [`Self::finish_kept`].
+    pub fn keep_picture(&mut self, seconds: f32) {
+        let number = self.asked;
+        self.capture(seconds, move |album, picture| {
+            album.kept.push((number, picture));
+        });
+    }
+
+    /// Goes on by a frame [s]; its picture comes to the album some frames later.
+    fn capture(
+        &mut self,
+        seconds: f32,
+        put: impl Fn(&mut Album, RgbImage) + Send + Sync + 'static,
+    ) {
+        self.actor.act(self.app.world_mut(), self.time, seconds);
         self.asked += 1;
         self.app
             .world_mut()
             .spawn(Screenshot::image(self.image.clone()))
             .observe(
-                move |captured: On<ScreenshotCaptured>, mut album: ResMut<Album>| match save(
-                    &captured.image,
-                    &path,
-                ) {
-                    Ok(()) => album.saved.push(path.clone()),
-                    Err(error) => album.errors.push(format!("{}: {error}", path.display())),
+                move |captured: On<ScreenshotCaptured>, mut album: ResMut<Album>| match captured
+                    .image
+                    .clone()
+                    .try_into_dynamic()
+                {
+                    Ok(picture) => put(&mut album, picture.to_rgb8()),
+                    Err(error) => album.errors.push(error.to_string()),
                 },
             );
         self.update(seconds, true);
         self.time += seconds;
     }
 
-    /// Waits for the last pictures.
+    /// Waits for the last pictures, and says where they were saved.
     ///
     /// # Errors
     /// When one of them cannot be written, or does not come.
-    pub fn finish(mut self) -> Result<Vec<PathBuf>, OffscreenError> {
+    pub fn finish(self) -> Result<Vec<PathBuf>, OffscreenError> {
+        let mut saved = self.wait()?.saved;
+        saved.sort();
+        Ok(saved)
+    }
+
+    /// Waits for the last pictures, and returns those that were kept, in order.
+    ///
+    /// # Errors
+    /// When one of them does not come.
+    pub fn finish_kept(self) -> Result<Vec<RgbImage>, OffscreenError> {
+        let mut kept = self.wait()?.kept;
+        kept.sort_by_key(|(number, _)| *number);
+        Ok(kept.into_iter().map(|(_, picture)| picture).collect())
+    }
+
+    fn wait(mut self) -> Result<Album, OffscreenError> {
         for _ in 0..200 {
-            let album = self.app.world().resource::<Album>();
-            if album.saved.len() + album.errors.len() >= self.asked {
+            if self.app.world().resource::<Album>().count() >= self.asked {
                 break;
             }
             thread::sleep(Duration::from_millis(10));
@@ -205,14 +250,11 @@ impl Offscreen {
         let Some(album) = self.app.world_mut().remove_resource::<Album>() else {
             return Err(OffscreenError::Missing(self.asked));
         };
-        if let Some(error) = album.errors.into_iter().next() {
-            return Err(OffscreenError::Write(error));
-        }
-        let mut saved = album.saved;
-        saved.sort();
-        match self.asked - saved.len() {
-            0 => Ok(saved),
-            missing => Err(OffscreenError::Missing(missing)),
+        let missing = self.asked - album.count();
+        match album.errors.first() {
+            Some(error) => Err(OffscreenError::Write(error.clone())),
+            None if missing > 0 => Err(OffscreenError::Missing(missing)),
+            None => Ok(album),
         }
     }
 
@@ -257,19 +299,4 @@ pub fn complete(app: &mut App) {
     }
     app.finish();
     app.cleanup();
-}
-
-/// Writes a picture.
-///
-/// # Errors
-/// What went wrong, in words.
-fn save(image: &Image, path: &Path) -> Result<(), String> {
-    let picture = image
-        .clone()
-        .try_into_dynamic()
-        .map_err(|error| error.to_string())?;
-    picture
-        .to_rgb8()
-        .save(path)
-        .map_err(|error| error.to_string())
 }

@@ -6,8 +6,34 @@ use egui::{DragValue, Slider, Ui};
 use tailorbird::prelude::*;
 
 use super::{
-    help::CONTROLS, plot::plots, scenes::SceneKind, settings::DemoSettings, status::Status,
+    ask::Ask,
+    help::CONTROLS,
+    notices::{Notices, problems},
+    plot::performance,
+    scene_list::scene_list,
+    settings::DemoSettings,
+    status::Status,
+    thumbnails::Pictures,
 };
+
+/// Width of what is in the panel [points], where the window is wide enough.
+const WIDTH: f32 = 310.0;
+/// Of frame, margins and scroll bar [points].
+const AROUND: f32 = 26.0;
+/// From the window's edge [points].
+const MARGIN: f32 = 6.0;
+/// The most of the window's width that it covers [-].
+const MOST: f32 = 1.0 / 3.0;
+
+/// How wide what is in the panel is, in a window of this width [points].
+fn inner_width(window: f32) -> f32 {
+    WIDTH.min(window * MOST - AROUND - MARGIN).max(80.0)
+}
+
+/// The part of a window's width [points] that the panel covers [-].
+pub fn covered(window: f32) -> f32 {
+    ((inner_width(window) + AROUND + MARGIN) / window.max(1.0)).min(0.5)
+}
 
 /// What the panel shows and changes.
 pub struct PanelState<'a> {
@@ -15,27 +41,57 @@ pub struct PanelState<'a> {
     pub settings: &'a mut DemoSettings,
     /// Is shown.
     pub status: &'a Status,
+    /// Are shown, and closed.
+    pub notices: &'a mut Notices,
+    /// Are shown.
+    pub pictures: &'a Pictures,
+    /// What the player asked for is added.
+    pub asks: &'a mut Vec<Ask>,
+}
+
+/// Shows the panel at the right of a window. What does not fit in is scrolled to. Returns where it is [points].
+pub fn panel_window(context: &egui::Context, state: &mut PanelState) -> Option<egui::Rect> {
+    let screen = context.content_rect();
+    let width = inner_width(screen.width());
+    let shown = egui::Window::new("Tailorbird")
+        .anchor(egui::Align2::RIGHT_TOP, [-MARGIN, MARGIN])
+        .resizable(false)
+        // It is hidden with a key.
+        .collapsible(false)
+        .fixed_size([width, screen.height() - 50.0])
+        .show(context, |ui| {
+            ui.set_width(width);
+            // It stays where it is while the rest is scrolled.
+            problems(ui, state.notices);
+            egui::ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| panel(ui, state));
+        });
+    shown.map(|window| window.response.rect)
 }
 
 /// Shows the settings and changes them as the player wants.
 pub fn panel(ui: &mut Ui, state: &mut PanelState) {
-    ui.spacing_mut().slider_width = 130.0;
+    ui.spacing_mut().slider_width = (0.36 * ui.available_width()).min(112.0);
     let status = state.status;
+    let decimals = usize::from(status.frame_rate < 10.0);
     ui.label(format!(
-        "{:.0} frames/s · {:.0} particles · {:.0} constraints",
+        "{:.decimals$} frames/s · {:.0} particles · {:.0} constraints",
         status.frame_rate, status.particles, status.constraints
     ));
-    scene(ui, state.settings);
+    scene(ui, state);
+    section(ui, "Material", true, |ui| material(ui, state.settings));
     section(ui, "Air and gravity", true, |ui| air(ui, state.settings));
     section(ui, "Solver", true, |ui| {
         solver(ui, state.settings, status.substeps);
     });
-    section(ui, "Material", true, |ui| material(ui, state.settings));
+    section(ui, "Performance", true, |ui| {
+        performance(ui, state.settings, status);
+    });
     section(ui, "Ball and hand", false, |ui| {
         ball_and_hand(ui, state.settings);
     });
     section(ui, "Look", false, |ui| look(ui, state.settings));
-    section(ui, "Figures", true, |ui| plots(ui, status));
     section(ui, "Keys", false, keys);
 }
 
@@ -45,16 +101,10 @@ fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
         .show(ui, add);
 }
 
-fn scene(ui: &mut Ui, settings: &mut DemoSettings) {
+fn scene(ui: &mut Ui, state: &mut PanelState) {
+    let settings = &mut *state.settings;
+    ui.scope(|ui| scene_list(ui, settings, state.pictures));
     ui.horizontal_wrapped(|ui| {
-        for scene in SceneKind::ALL {
-            let chosen = settings.scene == scene;
-            if ui.selectable_label(chosen, scene.name()).clicked() && !chosen {
-                settings.show(scene);
-            }
-        }
-    });
-    ui.horizontal(|ui| {
         if ui.button("Reset").clicked() {
             settings.reset();
         }
@@ -67,6 +117,22 @@ fn scene(ui: &mut Ui, settings: &mut DemoSettings) {
             .clicked()
         {
             settings.single_steps = settings.single_steps.wrapping_add(1);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (name, ask, hint) in [
+            ("Save", Ask::Save, "save the settings (F5)"),
+            ("Load", Ask::Load, "load the settings (F9)"),
+            (
+                "Picture",
+                Ask::Picture,
+                "save a picture of the window (F12)",
+            ),
+            ("Hide", Ask::Panel, "hide the panel; H shows it again"),
+        ] {
+            if ui.button(name).on_hover_text(hint).clicked() {
+                state.asks.push(ask);
+            }
         }
     });
 }

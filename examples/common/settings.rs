@@ -2,6 +2,7 @@
 //! to the world.
 
 use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
 use tailorbird::prelude::*;
 
 use super::scenes::SceneKind;
@@ -45,10 +46,13 @@ pub struct DemoSettings {
     pub look: Look,
     /// How the cloth under the pointer is found.
     pub picking: ClothPickingBackend,
+    /// Whether a second cloth hangs beside the first, held by the other solver. Goes with the scene.
+    pub beside: bool,
 }
 
 /// What is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Look {
     /// The weave, or a plain colour.
     pub texture: bool,
@@ -121,6 +125,7 @@ impl DemoSettings {
             grab_radius: 0.06,
             look: Look::default(),
             picking: ClothPickingBackend::Ray,
+            beside: false,
         };
         settings.show(scene);
         settings
@@ -130,6 +135,7 @@ impl DemoSettings {
     pub fn show(&mut self, scene: SceneKind) {
         self.scene = scene;
         self.resets += 1;
+        self.beside = false;
         self.choose_preset(scene.preset());
         self.wind = scene.wind();
         self.sphere_radius = scene.sphere_radius();
@@ -138,6 +144,31 @@ impl DemoSettings {
     /// Starts the scene anew, with the settings as they are.
     pub fn reset(&mut self) {
         self.resets += 1;
+    }
+
+    /// Takes over settings that were loaded, and starts their scene.
+    pub fn take_over(&mut self, loaded: Self) {
+        *self = Self {
+            resets: self.resets + 1,
+            single_steps: self.single_steps,
+            ..loaded
+        };
+    }
+
+    /// Shows the scene this many places further in the list, which goes round.
+    pub fn show_next(&mut self, places: isize) {
+        let count = SceneKind::ALL.len() as isize;
+        let at = SceneKind::ALL.iter().position(|scene| *scene == self.scene);
+        let next = (at.unwrap_or(0) as isize + places).rem_euclid(count);
+        self.show(SceneKind::ALL[next as usize]);
+    }
+
+    /// The solver of the second cloth.
+    pub fn other_solver(&self) -> ClothSolver {
+        match self.solver {
+            ClothSolver::Chains => ClothSolver::GaussSeidel,
+            ClothSolver::GaussSeidel => ClothSolver::Chains,
+        }
     }
 
     /// Takes over a preset; does nothing when there is none of this name.

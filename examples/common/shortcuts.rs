@@ -31,6 +31,14 @@ pub fn use_shortcuts(keys: Option<Res<ButtonInput<KeyCode>>>, mut settings: ResM
         settings.paused = true;
         settings.single_steps = settings.single_steps.wrapping_add(1);
     }
+    if keys.just_pressed(KeyCode::KeyC) {
+        settings.beside = !settings.beside;
+    }
+    for (key, places) in [(KeyCode::BracketLeft, -1), (KeyCode::BracketRight, 1)] {
+        if keys.just_pressed(key) {
+            settings.show_next(places);
+        }
+    }
     for (key, scene) in SCENES.into_iter().zip(SceneKind::ALL) {
         if keys.just_pressed(key) {
             settings.show(scene);

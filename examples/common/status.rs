@@ -1,4 +1,4 @@
-//! What the panel shows: frame rate, step time, stretch, now and over the last seconds.
+//! What the panel shows: frame rate, times, stretch, now and over the last seconds.
 
 use std::collections::VecDeque;
 
@@ -8,14 +8,21 @@ use bevy::{
 };
 use tailorbird::prelude::*;
 
+use super::{
+    clock::{StageClockPlugin, StageTimes},
+    compare::{self, Beside, ClothFigures},
+    scenes::SceneCloth,
+    settings::DemoSettings,
+};
+
 /// Keeps a [`Status`].
 pub struct StatusPlugin;
 
 impl Plugin for StatusPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(FrameTimeDiagnosticsPlugin::default())
+        app.add_plugins((FrameTimeDiagnosticsPlugin::default(), StageClockPlugin))
             .init_resource::<Status>()
-            .add_systems(Update, observe);
+            .add_systems(Update, (observe, observe_cloths));
     }
 }
 
@@ -34,6 +41,12 @@ pub struct Status {
     pub mean_stretch: f64,
     /// One sample per frame, the oldest first.
     pub samples: VecDeque<Sample>,
+    /// The stages of a step with their times [ms].
+    pub stages: Vec<(&'static str, f64)>,
+    /// The cloths of the scene, every 15th step.
+    pub cloths: Vec<ClothFigures>,
+    /// The time of a step with one cloth, and with a second beside it [ms], smoothed; 0 where it was not measured.
+    pub step_times: [f64; 2],
 }
 
 /// Figures at one time.
@@ -43,6 +56,8 @@ pub struct Sample {
     pub time: f64,
     /// How long a step took [ms].
     pub step_time: f64,
+    /// How long a frame took [ms].
+    pub frame_time: f64,
     /// The largest stretch [%].
     pub stretch: f64,
 }
@@ -69,7 +84,13 @@ impl Status {
     }
 }
 
-fn observe(time: Res<Time<Real>>, diagnostics: Res<DiagnosticsStore>, mut status: ResMut<Status>) {
+fn observe(
+    time: Res<Time<Real>>,
+    diagnostics: Res<DiagnosticsStore>,
+    stages: Res<StageTimes>,
+    step: Res<ClothStepTime>,
+    mut status: ResMut<Status>,
+) {
     let figure = |path: &DiagnosticPath| diagnostics.get(path);
     let last = |path: &DiagnosticPath| figure(path).and_then(Diagnostic::value).unwrap_or(0.0);
     status.frame_rate = figure(&FrameTimeDiagnosticsPlugin::FPS)
@@ -79,9 +100,42 @@ fn observe(time: Res<Time<Real>>, diagnostics: Res<DiagnosticsStore>, mut status
     status.constraints = last(&ClothDiagnosticsPlugin::CONSTRAINTS);
     status.substeps = last(&ClothDiagnosticsPlugin::SUBSTEPS).round() as u32;
     status.mean_stretch = last(&ClothDiagnosticsPlugin::MEAN_STRETCH);
+    status.stages = stages.milliseconds(&step).into();
     status.add(Sample {
         time: time.elapsed_secs_f64(),
         step_time: last(&ClothDiagnosticsPlugin::STEP_TIME),
+        frame_time: last(&FrameTimeDiagnosticsPlugin::FRAME_TIME),
         stretch: last(&ClothDiagnosticsPlugin::MAX_STRETCH),
     });
+}
+
+/// Steps from one measurement of stretch to the next: it costs a good part of a step.
+const STRETCH_EVERY: u64 = 15;
+
+fn observe_cloths(
+    step: Res<ClothStep>,
+    step_time: Res<ClothStepTime>,
+    settings: Res<DemoSettings>,
+    cloths: Query<(&ClothSolver, &ClothParticles, &ClothTopology, Has<Beside>), With<SceneCloth>>,
+    mut seen: Local<(u64, u64, usize)>,
+    mut status: ResMut<Status>,
+) {
+    let count = cloths.iter().len();
+    let (steps, stretched, before) = &mut *seen;
+    let now = step.steps();
+    if *steps != now && count > 0 {
+        *steps = now;
+        let last = 1e3 * step_time.total.as_secs_f64();
+        let smooth = &mut status.step_times[usize::from(settings.beside)];
+        // The first steps build things.
+        *smooth = if *smooth == 0.0 || *before != count {
+            last
+        } else {
+            *smooth + 0.05 * (last - *smooth)
+        };
+    }
+    if now >= *stretched + STRETCH_EVERY || *before != count {
+        (*stretched, *before) = (now, count);
+        status.cloths = compare::figures(&cloths);
+    }
 }

@@ -1,20 +1,22 @@
 //! The window with the panel, and what the windowed examples share.
 
 use bevy::{pbr::wireframe::WireframePlugin, prelude::*, window::PrimaryWindow};
-use bevy_egui::{EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, egui};
+use bevy_egui::{EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};
 
 use super::{
+    ask::{Ask, AskPlugin, PanelShown},
     camera::OrbitCamera,
-    panel::{PanelState, panel},
+    notices::{Notices, toasts},
+    panel::{PanelState, covered, panel_window},
+    photo::PhotoPlugin,
+    plot::beside,
     settings::DemoSettings,
     status::{Status, StatusPlugin},
+    thumbnails::{Pictures, Thumbnails, ThumbnailsPlugin},
 };
 
-/// The panel over the window, and wireframes.
+/// The panel over the window, wireframes and pictures.
 pub struct PanelPlugin;
-
-/// Width of the panel [points].
-const PANEL_WIDTH: f32 = 310.0;
 
 impl Plugin for PanelPlugin {
     fn build(&self, app: &mut App) {
@@ -22,6 +24,9 @@ impl Plugin for PanelPlugin {
             EguiPlugin::default(),
             WireframePlugin::default(),
             StatusPlugin,
+            ThumbnailsPlugin,
+            AskPlugin,
+            PhotoPlugin,
         ))
         .add_systems(Startup, keep_input_of_panel)
         .add_systems(Update, make_room_for_panel)
@@ -37,36 +42,47 @@ fn keep_input_of_panel(mut egui: ResMut<EguiGlobalSettings>) {
 /// Draws the panel; the settings count as changed only where the player changed them.
 fn show_panel(
     mut contexts: EguiContexts,
+    shown: Res<PanelShown>,
     mut settings: ResMut<DemoSettings>,
     status: Res<Status>,
+    mut notices: ResMut<Notices>,
+    thumbnails: Option<Res<Thumbnails>>,
+    mut asks: MessageWriter<Ask>,
 ) -> Result {
     let context = contexts.ctx_mut()?;
-    let mut changed = settings.clone();
-    let height = context.content_rect().height();
-    egui::Window::new("Tailorbird")
-        .anchor(egui::Align2::RIGHT_TOP, [-6.0, 6.0])
-        .resizable(false)
-        .fixed_size([PANEL_WIDTH, height - 50.0])
-        .show(context, |ui| {
-            ui.set_width(PANEL_WIDTH);
-            let mut state = PanelState {
-                settings: &mut changed,
-                status: &status,
-            };
-            egui::ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| panel(ui, &mut state));
-        });
-    settings.set_if_neq(changed);
+    if shown.0 {
+        let mut changed = settings.clone();
+        let mut asked = Vec::new();
+        let pictures = thumbnails.map_or_else(Pictures::default, |found| found.pictures);
+        let mut state = PanelState {
+            settings: &mut changed,
+            status: &status,
+            notices: notices.bypass_change_detection(),
+            pictures: &pictures,
+            asks: &mut asked,
+        };
+        panel_window(context, &mut state);
+        settings.set_if_neq(changed);
+        asks.write_batch(asked);
+    }
+    if settings.beside {
+        beside(context, &status);
+    }
+    toasts(context, &notices, shown.0);
     Ok(())
 }
 
 /// Moves the middle of the picture to the middle of what the panel leaves free.
 fn make_room_for_panel(
     window: Single<&Window, With<PrimaryWindow>>,
+    shown: Res<PanelShown>,
     mut cameras: Query<&mut OrbitCamera>,
 ) {
-    let covered = (PANEL_WIDTH / window.width().max(1.0)).min(0.5);
+    let covered = if shown.0 {
+        covered(window.width())
+    } else {
+        0.0
+    };
     for mut camera in &mut cameras {
         if camera.covered != covered {
             camera.covered = covered;

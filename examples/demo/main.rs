@@ -12,6 +12,7 @@ use bevy::prelude::*;
 use clap::Parser;
 use common::{
     apply::DemoPlugin,
+    ask::SettingsPath,
     garment,
     graphics::{check_driver, has_display},
     help,
@@ -19,6 +20,7 @@ use common::{
     scenes::SceneKind,
     script::{self, Script},
     settings::DemoSettings,
+    settings_file,
     stage::StagePlugin,
     window::{ExitAfterFrames, PanelPlugin},
 };
@@ -31,9 +33,12 @@ struct Arguments {
     /// curtain, flag, tablecloth, ball, cape, banner, garment or crates
     #[arg(long)]
     scene: Option<SceneKind>,
-    /// Particles along the longer side of the cloth
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512), default_value_t = 128)]
-    resolution: u32,
+    /// Particles along the longer side of the cloth [default: 128]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512))]
+    resolution: Option<u32>,
+    /// Settings to begin with, as F5 saves them; F5 and F9 save to and load from this file
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
     /// Draws to PNG files in this folder instead of a window
     #[arg(long, value_name = "DIR")]
     offscreen: Option<PathBuf>,
@@ -76,13 +81,17 @@ fn run(mut arguments: Arguments) -> Result<ExitCode, String> {
     }
     match arguments.offscreen.take() {
         Some(dir) => draw(&arguments, dir),
-        None => Ok(play(&arguments)),
+        None => play(&arguments),
     }
 }
 
 /// Opens the window.
-fn play(arguments: &Arguments) -> ExitCode {
+fn play(arguments: &Arguments) -> Result<ExitCode, String> {
+    let settings = settings(arguments, arguments.scene)?;
+    let path = arguments.settings.clone();
+    let path = path.map_or_else(SettingsPath::default, SettingsPath);
     let exit = App::new()
+        .insert_resource(path)
         .add_plugins(
             DefaultPlugins
                 .set(WindowPlugin {
@@ -98,7 +107,7 @@ fn play(arguments: &Arguments) -> ExitCode {
         .add_plugins((
             ClothPlugins::default(),
             DemoPlugin {
-                settings: settings(arguments, arguments.scene.unwrap_or_default()),
+                settings,
                 stage: StagePlugin {
                     fine: arguments.fine,
                     ..default()
@@ -108,30 +117,32 @@ fn play(arguments: &Arguments) -> ExitCode {
             ExitAfterFrames,
         ))
         .run();
-    match exit {
+    Ok(match exit {
         AppExit::Success => ExitCode::SUCCESS,
         AppExit::Error(code) => ExitCode::from(code.get()),
-    }
+    })
 }
 
-/// Draws one scene, or all of them.
+/// Draws one scene, that of the settings, or all of them.
 fn draw(arguments: &Arguments, dir: PathBuf) -> Result<ExitCode, String> {
     let script = match &arguments.script {
         Some(path) => Some(read(path)?),
         None => None,
     };
-    let scenes = match arguments.scene {
-        Some(scene) => vec![scene],
-        None => SceneKind::ALL.into(),
+    let scenes = match (arguments.scene, &arguments.settings) {
+        (None, None) => SceneKind::ALL.map(Some).into(),
+        (scene, _) => vec![scene],
     };
     for scene in scenes {
+        let settings = settings(arguments, scene)?;
+        let scene = settings.scene;
         let pictures = offscreen::draw(&OffscreenOptions {
             dir: dir.clone(),
             seconds: arguments.seconds,
             every: arguments.every,
             size: arguments.size,
             fine: arguments.fine,
-            settings: settings(arguments, scene),
+            settings,
             script: script.clone().unwrap_or_else(|| Script::of(scene)),
         });
         let pictures = pictures.map_err(|error| error.to_string())?;
@@ -140,11 +151,19 @@ fn draw(arguments: &Arguments, dir: PathBuf) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn settings(arguments: &Arguments, scene: SceneKind) -> DemoSettings {
-    DemoSettings {
-        resolution: arguments.resolution,
-        ..DemoSettings::of(scene)
+/// What the command line asks for; a scene that it names comes with its own material, wind and ball.
+fn settings(arguments: &Arguments, scene: Option<SceneKind>) -> Result<DemoSettings, String> {
+    let mut settings = match &arguments.settings {
+        Some(file) => settings_file::load(file).map_err(|error| error.to_string())?,
+        None => DemoSettings::default(),
+    };
+    if let Some(scene) = scene {
+        settings.show(scene);
     }
+    if let Some(resolution) = arguments.resolution {
+        settings.resolution = resolution;
+    }
+    Ok(settings)
 }
 
 fn read(path: &PathBuf) -> Result<Script, String> {

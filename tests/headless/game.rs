@@ -28,6 +28,14 @@ pub const SIZE: UVec2 = UVec2::new(800, 600);
 
 /// A game with a window of 800 × 600, and frames that each last one fixed step.
 pub fn game() -> App {
+    let mut app = unfinished();
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// The same, before its plugins are finished: more can be added.
+pub fn unfinished() -> App {
     let mut app = App::new();
     app.add_plugins(
         DefaultPlugins
@@ -57,8 +65,6 @@ pub fn game() -> App {
     .add_plugins((bevy::render::sync_world::SyncWorldPlugin, ClothPlugins::default()))
     .insert_resource(Time::<Fixed>::from_hz(HERTZ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / HERTZ)));
-    app.finish();
-    app.cleanup();
     app
 }
 

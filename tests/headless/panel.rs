@@ -4,10 +4,14 @@ use bevy_egui::egui::{self, Event, Pos2, RawInput, Rect, Shape, Vec2};
 use tailorbird::prelude::*;
 
 use crate::common::{
+    ask::Ask,
+    compare::ClothFigures,
+    notices::{Notices, problems},
     panel::{PanelState, panel},
     scenes::SceneKind,
     settings::DemoSettings,
     status::Status,
+    thumbnails::Pictures,
 };
 
 const SCREEN: Vec2 = Vec2::new(340.0, 2400.0);
@@ -15,6 +19,10 @@ const SCREEN: Vec2 = Vec2::new(340.0, 2400.0);
 struct Bench {
     context: egui::Context,
     settings: DemoSettings,
+    status: Status,
+    notices: Notices,
+    pictures: Pictures,
+    asks: Vec<Ask>,
     shapes: Vec<Shape>,
     seconds: f64,
 }
@@ -24,6 +32,10 @@ impl Bench {
         let mut bench = Self {
             context: egui::Context::default(),
             settings: DemoSettings::default(),
+            status: Status::default(),
+            notices: Notices::default(),
+            pictures: Pictures::default(),
+            asks: Vec::new(),
             shapes: Vec::new(),
             seconds: 0.0,
         };
@@ -46,16 +58,16 @@ impl Bench {
             events,
             ..RawInput::default()
         };
-        let settings = &mut self.settings;
-        let status = Status::default();
+        let mut state = PanelState {
+            settings: &mut self.settings,
+            status: &self.status,
+            notices: &mut self.notices,
+            pictures: &self.pictures,
+            asks: &mut self.asks,
+        };
         let mut output = self.context.run_ui(input, |ui| {
-            panel(
-                ui,
-                &mut PanelState {
-                    settings,
-                    status: &status,
-                },
-            );
+            problems(ui, state.notices);
+            panel(ui, &mut state);
         });
         output.textures_delta.clear();
         self.shapes = output
@@ -67,17 +79,7 @@ impl Bench {
 
     /// Where a text is shown.
     fn find(&self, text: &str) -> Pos2 {
-        fn search(shape: &Shape, text: &str) -> Option<Pos2> {
-            match shape {
-                Shape::Text(shown) if shown.galley.text() == text => {
-                    Some(shown.pos + 0.5 * shown.galley.size())
-                }
-                Shape::Vec(shapes) => shapes.iter().find_map(|shape| search(shape, text)),
-                _ => None,
-            }
-        }
-        let place = self.shapes.iter().find_map(|shape| search(shape, text));
-        place.unwrap_or_else(|| panic!("{text:?} is not shown"))
+        find(&self.shapes, text).unwrap_or_else(|| panic!("{text:?} is not shown"))
     }
 
     fn press(&mut self, place: Pos2) {
@@ -99,6 +101,17 @@ impl Bench {
         let place = self.find(text);
         self.press(place);
     }
+}
+
+/// The middle of a text that is drawn.
+pub fn find(shapes: &[Shape], text: &str) -> Option<Pos2> {
+    shapes.iter().find_map(|shape| match shape {
+        Shape::Text(shown) if shown.galley.text() == text => {
+            Some(shown.pos + 0.5 * shown.galley.size())
+        }
+        Shape::Vec(shapes) => find(shapes, text),
+        _ => None,
+    })
 }
 
 #[test]
@@ -219,4 +232,70 @@ fn sliders_set_what_they_are_named_after() {
             assert_eq!(changed, known == name, "{name}: {known}");
         }
     }
+}
+
+#[test]
+fn what_is_no_setting_is_asked_for() {
+    let mut bench = Bench::new();
+    for (name, ask) in [
+        ("Save", Ask::Save),
+        ("Load", Ask::Load),
+        ("Picture", Ask::Picture),
+        ("Hide", Ask::Panel),
+    ] {
+        bench.click(name);
+        assert_eq!(std::mem::take(&mut bench.asks), [ask]);
+    }
+    assert_eq!(bench.settings, DemoSettings::default());
+}
+
+#[test]
+fn what_is_wrong_is_shown_until_it_is_closed() {
+    let mut bench = Bench::new();
+    bench.notices.wrong("one thing is wrong");
+    bench.notices.wrong("another as well");
+    bench.notices.wrong("another as well");
+    bench.notices.done("this was done");
+    bench.pass(Vec::new());
+    assert!(find(&bench.shapes, "one thing is wrong").is_some());
+    assert!(find(&bench.shapes, "another as well (2 times)").is_some());
+    assert!(find(&bench.shapes, "this was done").is_none());
+    // The first of them.
+    bench.click("Close");
+    assert!(find(&bench.shapes, "one thing is wrong").is_none());
+    bench.click("Close");
+    assert!(find(&bench.shapes, "Close").is_none());
+    assert_eq!(bench.settings, DemoSettings::default());
+}
+
+#[test]
+fn both_solvers_are_shown_with_their_stretch_and_time() {
+    let mut bench = Bench::new();
+    let cloth = |solver, mean| ClothFigures {
+        solver,
+        particles: 100,
+        stretch: Stretch {
+            mean,
+            p99: 2.0 * mean,
+            max: 3.0 * mean,
+        },
+    };
+    bench.status.cloths = vec![
+        cloth(ClothSolver::Chains, 0.0001),
+        cloth(ClothSolver::GaussSeidel, 0.08),
+    ];
+    bench.status.step_times = [1.5, 14.0];
+    bench.settings.beside = true;
+    bench.pass(Vec::new());
+    let row = |texts: &[&str]| {
+        let places: Vec<Pos2> = texts.iter().map(|text| bench.find(text)).collect();
+        assert!(
+            places.windows(2).all(|two| two[0].x < two[1].x),
+            "{texts:?}"
+        );
+    };
+    row(&["0.01 %", "0.02 %", "0.03 %", "1.5 ms"]);
+    row(&["8.00 %", "16 %", "24 %", "12.5 ms"]);
+    bench.click("the other solver beside (C)");
+    assert!(!bench.settings.beside);
 }

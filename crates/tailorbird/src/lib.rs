@@ -37,6 +37,7 @@
 //! | [`cloth::inertia`] | a cloth on something that moves: what it feels, teleports, speed limits |
 //! | [`cloth::collider`] | what a cloth collides with: shapes, layers, bodies |
 //! | `tailorbird_avian`, `tailorbird_rapier` | bodies of physics engines |
+//! | [`mesh::rendering`] | how cloth is drawn: every setting, and its cost |
 //! | [`motion_vectors`] | temporal antialiasing and motion blur |
 //! | [`fabric`], [`cloth::material`] | what cloth is made of: how it moves, how it looks |
 //! | [`cloth::wind`] | air: gusts, turbulence, zones |

@@ -7,6 +7,7 @@ pub mod garments;
 mod packed;
 mod parts;
 mod pins;
+pub mod rendering;
 mod slab;
 mod sorting;
 mod tangents;

@@ -1,0 +1,46 @@
+//! How long the parts of a step take, and what a frame does with it.
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use tailorbird::{mesh::ClothMeshSystems, prelude::*};
+
+/// Measures the writing of meshes; the plugin measures the step.
+pub struct StageClockPlugin;
+
+/// How long the stages took last.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct StageTimes {
+    start: Option<Instant>,
+    mesh: Duration,
+}
+
+impl StageTimes {
+    /// Each stage with its time [ms], given that of the step.
+    pub fn milliseconds(&self, step: &ClothStepTime) -> [(&'static str, f64); 3] {
+        [
+            ("substeps", step.simulate),
+            ("before and after", step.total.saturating_sub(step.simulate)),
+            // Other systems of the frame may run at the same time.
+            ("mesh, each frame, at most", self.mesh),
+        ]
+        .map(|(name, time)| (name, 1e3 * time.as_secs_f64()))
+    }
+}
+
+impl Plugin for StageClockPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<StageTimes>().add_systems(
+            PostUpdate,
+            (start.before(ClothMeshSystems), stop.after(ClothMeshSystems)).chain(),
+        );
+    }
+}
+
+fn start(mut times: ResMut<StageTimes>) {
+    times.start = Some(Instant::now());
+}
+
+fn stop(mut times: ResMut<StageTimes>) {
+    times.mesh = times.start.map_or(Duration::ZERO, |start| start.elapsed());
+}
