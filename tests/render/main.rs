@@ -8,6 +8,7 @@
 mod common;
 
 mod depth_picking;
+mod device_loss;
 mod light;
 mod motion;
 mod offscreen;
