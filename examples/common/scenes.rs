@@ -74,8 +74,10 @@ impl SceneKind {
     /// The preset that it starts with.
     pub const fn preset(self) -> &'static str {
         match self {
-            Self::Curtain | Self::Tablecloth | Self::Cape | Self::Garment => "cotton",
-            Self::Flag | Self::Banner => "silk",
+            Self::Curtain | Self::Tablecloth | Self::Cape | Self::Banner | Self::Garment => {
+                "cotton"
+            }
+            Self::Flag => "silk",
             Self::Ball | Self::Crates => "denim",
         }
     }
@@ -109,11 +111,11 @@ impl SceneKind {
                     period: 2.0,
                 },
                 turbulence: Turbulence {
-                    speed: 0.7,
+                    speed: 0.5,
                     scale: 1.2,
                     seed: 2,
                 },
-                ..Wind::steady(Vec3::new(1.5, 0.0, 2.5))
+                ..Wind::steady(Vec3::new(0.7, 0.0, 1.4))
             },
             Self::Tablecloth | Self::Ball | Self::Cape | Self::Garment | Self::Crates => {
                 Wind::default()
