@@ -10,8 +10,8 @@ use sheet::{Sheet, Split};
 
 const OVER: f32 = 0.02;
 const UNDER: f32 = 0.001;
-/// From here to there and back, on meshes whose triangles are up to ten times as long as wide.
-const SLIVERS: f32 = 0.08;
+/// From here to there and back, and of waves that meet others, on meshes whose triangles are up to ten times as long as wide.
+const SLIVERS: f32 = 0.1;
 
 fn flat(p: Vec2) -> Vec3 {
     p.extend(0.0)
@@ -238,7 +238,7 @@ proptest! {
         let (nearest, which) = mesh.nearest(&ends);
         for (i, &d) in nearest.iter().enumerate() {
             let least = from_a[i].min(from_b[i]);
-            prop_assert!(d == least || (d / least - 1.0).abs() <= 0.05, "{d} not {least}");
+            prop_assert!(d == least || (d / least - 1.0).abs() <= SLIVERS, "{d} not {least}");
             prop_assert_eq!(d.is_finite(), which[i] != NONE);
         }
     }
