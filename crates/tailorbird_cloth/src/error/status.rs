@@ -1,0 +1,106 @@
+//! What is wrong with an entity at present.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+use tracing::error;
+
+use super::{ClothError, ClothErrorKind};
+
+/// Which check an error came from; a check replaces its own errors alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+pub enum ErrorSource {
+    /// The mesh that a cloth is to be made of.
+    Mesh,
+    /// The rest shape.
+    Shape,
+    /// [`ClothMaterial`](crate::material::ClothMaterial).
+    Material,
+    /// [`ClothPins`](crate::pins::ClothPins).
+    Pins,
+    /// [`ClothGrab`](crate::grab::ClothGrab).
+    Grab,
+    /// [`ClothAttachment`](crate::attachment::ClothAttachment).
+    Attachment,
+    /// [`ClothMotionConstraints`](crate::motion::ClothMotionConstraints).
+    Motion,
+    /// [`ClothMotionTargets`](crate::motion::ClothMotionTargets).
+    MotionTargets,
+    /// The entity's place in the world.
+    Transform,
+    /// [`ClothCollider`](crate::collider::ClothCollider).
+    Collider,
+    /// [`WindZone`](crate::wind::WindZone).
+    Wind,
+    /// [`ClothForces`](crate::forces::ClothForces).
+    Forces,
+    /// [`ClothInertia`](crate::inertia::ClothInertia).
+    Inertia,
+    /// [`ClothSleep`](crate::sleep::ClothSleep).
+    Sleep,
+    /// [`ClothParticles`](crate::particles::ClothParticles).
+    State,
+}
+
+/// What is wrong with this cloth, collider or zone at present; empty when all is well.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothStatus {
+    entries: Vec<(ErrorSource, ClothErrorKind)>,
+}
+
+impl ClothStatus {
+    /// The errors that hold.
+    pub fn errors(&self) -> impl Iterator<Item = &ClothErrorKind> {
+        self.entries.iter().map(|(_, kind)| kind)
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_ok(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Whether this check has found nothing.
+    pub(crate) fn is_ok_for(&self, source: ErrorSource) -> bool {
+        self.entries.iter().all(|(s, _)| *s != source)
+    }
+
+    /// Replaces what `source` found before by `found`; what is new is logged and triggered.
+    ///
+    /// Does not touch (and so does not mark as changed) a status that stays as it is.
+    pub fn update(
+        status: &mut Mut<Self>,
+        entity: Entity,
+        commands: &ParallelCommands,
+        source: ErrorSource,
+        found: impl IntoIterator<Item = ClothErrorKind>,
+    ) {
+        let mut found = found.into_iter().peekable();
+        if found.peek().is_none() && status.is_ok_for(source) {
+            return;
+        }
+        let found: Vec<_> = found.collect();
+        // Compared as text, since NaN does not equal itself.
+        let before: Vec<String> = status
+            .entries
+            .iter()
+            .filter(|(s, _)| *s == source)
+            .map(|(_, kind)| kind.to_string())
+            .collect();
+        let after: Vec<String> = found.iter().map(ToString::to_string).collect();
+        if before == after {
+            return;
+        }
+        status.entries.retain(|(s, _)| *s != source);
+        for (kind, text) in found.into_iter().zip(after) {
+            if !before.contains(&text) {
+                error!("{entity}: {text}");
+                let event = ClothError {
+                    entity,
+                    kind: kind.clone(),
+                };
+                commands.command_scope(|mut commands| commands.trigger(event));
+            }
+            status.entries.push((source, kind));
+        }
+    }
+}
