@@ -45,6 +45,8 @@ pub struct ClothFrame {
     /// How far the entity was put elsewhere in this step.
     #[reflect(ignore)]
     jump: Option<Isometry3d>,
+    /// Whether the cloth goes where its entity goes, and feels nothing of it.
+    pub(crate) carries: bool,
     asked: Option<TeleportMode>,
     teleported: Option<TeleportMode>,
 }
@@ -70,6 +72,7 @@ impl Default for ClothFrame {
             felt: Felt::default(),
             taken: None,
             jump: None,
+            carries: false,
             asked: None,
             teleported: None,
         }
@@ -172,6 +175,15 @@ impl ClothFrame {
         [begin, into(now, at(fractions.1))]
     }
 
+    /// What is felt of the motion of this step, in the frame's axes at its start.
+    pub(crate) fn felt_motion(&self) -> Isometry3d {
+        let motion = self.start.inverse() * self.end;
+        Isometry3d::new(
+            self.felt.linear * Vec3::from(motion.translation),
+            Quat::IDENTITY.slerp(shortest(motion.rotation), self.felt.angular),
+        )
+    }
+
     /// Whether the frame moves during this step.
     pub fn is_moving(&self) -> bool {
         self.start != self.end
@@ -204,6 +216,8 @@ impl ClothFrame {
             .or_else(|| far.then_some(inertia.teleport));
         if mode.is_some() {
             self.teleported = mode;
+        }
+        if mode.is_some() || self.carries {
             self.jump = Some(to * self.start.inverse());
             self.start = to;
         }

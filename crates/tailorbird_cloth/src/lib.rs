@@ -89,7 +89,7 @@ pub mod prelude {
         reaction::ClothPinForces,
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
-        sleep::{ClothRest, ClothSleep},
+        sleep::{ClothRest, ClothSeen, ClothSleep},
         solver::ClothSolver,
         step::ClothStep,
         topology::{ClothTopology, report::MeshReport},

@@ -29,7 +29,7 @@ use crate::{
     prelude::*,
     runner::{OwnStages, simulate_cloths},
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
-    sleep::{rest_cloths, settle_cloths, wake_cloths},
+    sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
     solver::{calm_knots, solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
@@ -101,12 +101,18 @@ impl Plugin for ClothPlugin {
             Prepare,
             (
                 start_clock,
+                rest_unseen,
                 begin_step,
                 prepare_frames,
                 build_topology,
                 apply_pins,
                 reset_teleported,
-                (prepare_attachments, prepare_motion).chain(),
+                (
+                    prepare_attachments,
+                    prepare_motion,
+                    carry_unseen.run_if(step_runs),
+                )
+                    .chain(),
                 build_tethers,
                 plan_substeps,
                 (snapshot_colliders, prepare_wind).chain().run_if(step_runs),
@@ -227,6 +233,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothInertia>()
         .register_type::<ClothSleep>()
         .register_type::<ClothRest>()
+        .register_type::<ClothSeen>()
         .register_type::<crate::tethers::ClothTethers>()
         .register_type::<crate::settings::InstructionSet>()
         .register_type::<ClothTopology>()

@@ -33,7 +33,8 @@ use bevy_transform::TransformSystems;
 use crate::motion_vectors::add_previous_positions;
 
 /// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
-/// entities have the same mesh.
+/// entities have the same mesh. The cloths are simulated all the same, but where
+/// [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum ClothUnseen {
@@ -139,6 +140,9 @@ impl Plugin for ClothMeshPlugin {
                         .after(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible)
                         .after(SimulationLightSystems::CheckLightVisibility)
                         .run_if(not(write::writes_assets)),
+                    write::note_seen
+                        .after(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible)
+                        .after(SimulationLightSystems::CheckLightVisibility),
                 )
                     .chain()
                     .in_set(ClothMeshSystems),

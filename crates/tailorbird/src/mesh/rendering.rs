@@ -29,6 +29,7 @@
 //! | [`ClothMeshWrite::Asset`](super::ClothMeshWrite::Asset) | vertices go to the `Mesh` asset, for those who read it | 4 to 5 times as much time at 65,000 vertices |
 //! | [`ClothUnseen::Skip`](super::ClothUnseen::Skip) | what no camera and no light with shadows sees is not written | nothing |
 //! | [`ClothUnseen::Write`](super::ClothUnseen::Write) | it is | as if it were seen |
+//! | [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) | what no camera and no light with shadows sees is not simulated either | nothing; it saves both |
 //! | [`ClothShading`](tailorbird_cloth::normals::ClothShading) | smooth, or flat: each triangle its own light | flat has three vertices for each triangle, six for each particle |
 //! | [`ClothLook`](crate::fabric::ClothLook), [`Fabric`](crate::fabric::Fabric) | textures of a fabric, dyed | one material for all cloths that look alike; up to 17 MB of graphics memory for a fabric: three textures of 1024² and their smaller copies |
 //! | [`ClothMotionVectorsPlugin`](crate::motion_vectors::ClothMotionVectorsPlugin) | motion vectors of the vertices | 12 bytes for each vertex, and a batch of their own |

@@ -10,8 +10,14 @@ use bevy_mesh::Mesh;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::AttachedParticles, bounds::ClothBounds, drawn::ClothDrawnHolds, frame::ClothFrame,
-    normals::ClothNormals, particles::ClothParticles, sleep::ClothRest, step::ClothStep,
+    attachment::AttachedParticles,
+    bounds::ClothBounds,
+    drawn::ClothDrawnHolds,
+    frame::ClothFrame,
+    normals::ClothNormals,
+    particles::ClothParticles,
+    sleep::{ClothRest, ClothSeen},
+    step::ClothStep,
     topology::ClothTopology,
 };
 use tracing::warn;
@@ -59,6 +65,22 @@ pub(super) fn bound_cloth_meshes(
                 shown.insert(new);
             }
         }
+    }
+}
+
+/// Notes which cloths somebody sees; all of them where nothing is drawn.
+pub(super) fn note_seen(
+    uploads: Option<Res<VertexUploads>>,
+    mut cloths: Query<(&ClothMesh, &mut ClothSeen)>,
+    visible: Query<&ViewVisibility>,
+) {
+    for (cloth_mesh, mut seen) in &mut cloths {
+        let is_seen = |part: &ClothMeshPart| {
+            !part.in_asset || visible.get(part.entity).is_ok_and(|v| v.get())
+        };
+        let parts = &cloth_mesh.parts;
+        let any = uploads.is_none() || parts.is_empty() || parts.iter().any(is_seen);
+        seen.set_if_neq(ClothSeen(any));
     }
 }
 

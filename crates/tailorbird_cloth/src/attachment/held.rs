@@ -283,21 +283,33 @@ impl AttachedParticles {
 
     /// Puts the whole cloth elsewhere with its motion, where all that holds it was.
     fn jump(&self, frame: &ClothFrame, particles: &mut ClothParticles) {
-        let Some(Body {
-            jumped: Some(was),
-            end,
-            ..
-        }) = self.bodies.first()
-        else {
-            return;
-        };
+        if self.bodies.iter().all(|body| body.jumped.is_some()) {
+            self.carry(frame, particles);
+        }
+    }
+
+    /// The motion of the first body in this step, as seen from the frame at its start, where nothing else holds the cloth.
+    pub(crate) fn motion_of_all(
+        &self,
+        frame: &ClothFrame,
+        particles: &ClothParticles,
+    ) -> Option<Isometry3d> {
         let held_elsewhere = !particles.pins.is_empty() || !particles.limited.is_empty();
-        if held_elsewhere || self.bodies.iter().any(|body| body.jumped.is_none()) {
-            return;
+        let body = self.bodies.first().filter(|_| !held_elsewhere)?;
+        let was = body.jumped.unwrap_or(body.start);
+        if was == body.end {
+            return None;
         }
         // With its entity it may have been put elsewhere already.
-        let was = was.at(frame.start_of(was.place(), end.place()));
-        let motion = motion(&was, end, frame.isometry());
+        let was = was.at(frame.start_of(was.place(), body.end.place()));
+        Some(motion(&was, &body.end, frame.isometry()))
+    }
+
+    /// Moves the cloth and its motion along with what holds it; whether that moves.
+    pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> bool {
+        let Some(motion) = self.motion_of_all(frame, particles) else {
+            return false;
+        };
         for i in 0..particles.len() {
             let ClothParticles {
                 position,
@@ -309,6 +321,7 @@ impl AttachedParticles {
             previous_position.set(i, motion * previous_position.get(i));
             lost_displacement.set(i, motion.rotation * lost_displacement.get(i));
         }
+        true
     }
 
     /// Takes the springs into account before the constraints are solved: see [`spring`].

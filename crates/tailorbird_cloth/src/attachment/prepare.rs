@@ -154,7 +154,7 @@ pub fn prepare_attachments(
             };
             let start = state.pose.unwrap_or(end);
             let far = ClothCollider::TELEPORT_SPEED * step.world_seconds();
-            let jumped = step.running() && start.distance(&end) > far;
+            let jumped = step.running() && (start.distance(&end) > far || rest.is_unseen());
             let body = Body {
                 attachment,
                 target,

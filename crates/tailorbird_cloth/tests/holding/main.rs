@@ -13,4 +13,5 @@ mod motion;
 mod regressions;
 mod sleeping;
 mod springs;
+mod unseen;
 mod world;

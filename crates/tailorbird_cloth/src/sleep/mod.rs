@@ -1,10 +1,14 @@
 //! Cloth at rest settles and then sleeps: it costs nothing until something happens to it.
 
+mod unseen;
+
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+
+pub use unseen::{ClothSeen, carry_unseen, rest_unseen};
 
 use crate::{
     attachment::AttachedParticles,
@@ -26,6 +30,7 @@ use crate::{
     topology::ClothTopology,
     wind::BlowingWind,
 };
+use unseen::Unseen;
 
 /// When a cloth falls asleep: after it has been at rest for some time. It is at rest when it stays where it has been on average in the
 /// last quarter of a second, but for the way that [`speed`](Self::speed) makes in that time (root of the mean square of all runs of 16
@@ -38,6 +43,8 @@ use crate::{
 /// transform, its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
 /// moves, appears or disappears where it lies, and when what holds an attachment or a target of a motion constraint has moved by
 /// 0.1 mm. [`ClothRest::wake`] wakes it by hand.
+///
+/// With [`unseen`](Self::unseen) it also sleeps while nobody sees it, whatever happens to it: see there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothSleep {
@@ -47,6 +54,13 @@ pub struct ClothSleep {
     pub speed: f32,
     /// How long the cloth has to be at rest \[s\]; at least half a second.
     pub seconds: f32,
+    /// Whether the cloth sleeps while [`ClothSeen`] says that nobody sees it or its shadow; not by default.
+    ///
+    /// It is then carried along by its entity, or by the first of its attachments where those alone hold it, neither holds nor pushes
+    /// bodies, and does not notice what else happens. Seen again, it goes on in the shape that it had, at the velocity of what
+    /// carries it. Costs nothing where it hangs on nothing that moves, and next to nothing otherwise. One with
+    /// [`ClothMotionTargets`](crate::motion::ClothMotionTargets) stays awake.
+    pub unseen: bool,
 }
 
 impl Default for ClothSleep {
@@ -55,6 +69,7 @@ impl Default for ClothSleep {
             enabled: true,
             speed: 0.01,
             seconds: 1.0,
+            unseen: false,
         }
     }
 }
@@ -88,10 +103,11 @@ impl ClothSleep {
     }
 }
 
-/// Whether a cloth is at rest or asleep. Written by [`wake_cloths`] and [`rest_cloths`] alone.
+/// Whether a cloth is at rest or asleep. Written by [`rest_unseen`], [`wake_cloths`] and [`rest_cloths`] alone.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothRest {
+    unseen: Unseen,
     seconds: f32,
     /// Since when it sleeps.
     asleep: Option<u64>,
@@ -119,17 +135,32 @@ impl ClothRest {
 
     /// Whether the cloth sleeps.
     pub fn is_asleep(&self) -> bool {
-        self.asleep.is_some()
+        self.asleep.is_some() || self.is_unseen()
+    }
+
+    /// Whether the cloth sleeps because nobody sees it.
+    pub fn is_unseen(&self) -> bool {
+        matches!(self.unseen, Unseen::Since(_))
     }
 
     /// The step after which the cloth fell asleep, where it sleeps.
     pub fn asleep_since(&self) -> Option<u64> {
-        self.asleep
+        match self.unseen {
+            Unseen::Since(step) => Some(step),
+            _ => self.asleep,
+        }
     }
 
-    /// Wakes the cloth, and makes it wait again before it falls asleep.
+    /// Wakes the cloth, and makes it wait again before it falls asleep. One that nobody sees sleeps on.
     pub fn wake(&mut self) {
-        *self = Self::default();
+        *self = self.awake();
+    }
+
+    fn awake(&self) -> Self {
+        Self {
+            unseen: self.unseen,
+            ..Self::default()
+        }
     }
 }
 
@@ -213,6 +244,9 @@ pub fn wake_cloths(
             let errors = sleep.errors();
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Sleep, errors);
         }
+        if rest.is_unseen() {
+            continue;
+        }
         let changed = sleep.is_changed()
             || pins.is_changed()
             || material.is_changed()
@@ -228,8 +262,9 @@ pub fn wake_cloths(
             known != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
         };
         let disturbed = changed || pulled || rest.around.is_some_and(other);
-        if disturbed && *rest != ClothRest::default() {
-            rest.wake();
+        if disturbed {
+            let awake = rest.awake();
+            rest.set_if_neq(awake);
         }
     }
 }
@@ -269,7 +304,8 @@ impl ClothStagesItem<'_, '_> {
         let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
         // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
         if carries || led || !(still || self.rest.around.is_some()) {
-            self.rest.set_if_neq(ClothRest::default());
+            let awake = self.rest.awake();
+            self.rest.set_if_neq(awake);
             return;
         }
         self.rest.seconds += seconds;

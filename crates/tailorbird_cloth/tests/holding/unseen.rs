@@ -1,0 +1,179 @@
+//! Cloth that nobody sees sleeps whatever happens, goes where its holder goes, and goes on without a jerk.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_transform::components::Transform;
+use tailorbird_cloth::prelude::*;
+
+use crate::world::{Path, World, square};
+
+/// Runs at this speed [m/s].
+const RUN: f32 = 5.0;
+
+/// A runner who turns slowly.
+fn runner() -> Path {
+    Path(Box::new(|t| {
+        Transform::from_xyz(RUN * t, 0.0, 0.0).with_rotation(Quat::from_rotation_y(0.3 * t))
+    }))
+}
+
+/// A cape of a runner: pinned to its own entity, attached to another one, or both: to another one below which it is.
+#[derive(Clone, Copy, Debug)]
+enum Held {
+    Pinned,
+    Attached,
+    AttachedBelow,
+}
+
+const ALL: [Held; 3] = [Held::Pinned, Held::Attached, Held::AttachedBelow];
+
+fn cape(held: Held, unseen: bool) -> (World, Entity) {
+    let mut world = World::new();
+    let body = world.spawn((Transform::default(), runner()));
+    let cloth = world.spawn(square(12));
+    match held {
+        Held::Pinned => {
+            let mut cloth = world.app.world_mut().entity_mut(cloth);
+            cloth.insert((ClothPins::edges([GridEdge::Top]), ChildOf(body)));
+        }
+        Held::Attached | Held::AttachedBelow => {
+            world.attach(cloth, body, ClothAttachment::edge(GridEdge::Top));
+        }
+    }
+    if matches!(held, Held::AttachedBelow) {
+        let mut cloth = world.app.world_mut().entity_mut(cloth);
+        cloth.insert(ChildOf(body));
+    }
+    world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
+    world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = unseen);
+    (world, cloth)
+}
+
+fn see(world: &mut World, cloth: Entity, seen: bool) {
+    world.edit::<ClothSeen>(cloth, |is| is.0 = seen);
+}
+
+/// The shape as the cloth's holder sees it.
+fn shape(world: &World, cloth: Entity) -> Vec<Vec3> {
+    let all = world.positions(cloth);
+    let (x, y) = ((all[11] - all[0]).normalize(), Vec3::Y);
+    let z = x.cross(y);
+    let from = |p: &Vec3| *p - all[0];
+    all.iter()
+        .map(|p| Vec3::new(from(p).dot(x), from(p).dot(y), from(p).dot(z)))
+        .collect()
+}
+
+fn furthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| a.distance(*b))
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn it_keeps_its_shape_and_goes_where_its_holder_goes() {
+    for held in ALL {
+        let (mut world, cloth) = cape(held, true);
+        world.steps(120);
+        let before = shape(&world, cloth);
+        see(&mut world, cloth, false);
+        world.steps(240);
+        assert!(world.get::<ClothRest>(cloth).is_unseen(), "{held:?}");
+        assert!(furthest(&before, &shape(&world, cloth)) < 1e-3, "{held:?}");
+        let frame: &ClothFrame = world.get(cloth);
+        let bounds: &ClothBounds = world.get(cloth);
+        for p in world.positions(cloth) {
+            // To within the way of a step: the entity may have gone on after the step.
+            let p = frame.to_frame(p);
+            assert!(
+                p.distance(p.clamp(bounds.min, bounds.max)) < 0.1,
+                "{held:?}"
+            );
+            // 360 steps are 6 s.
+            assert!((world.at(cloth, 0).x - RUN * 6.0).abs() < 1.0, "{held:?}");
+        }
+    }
+}
+
+/// Seen again it moves as one that was seen all the time: no jerk, no stretch.
+#[test]
+fn it_goes_on_as_one_that_was_seen_all_the_time() {
+    for held in ALL {
+        let stretches = [false, true].map(|unseen| {
+            let (mut world, cloth) = cape(held, unseen);
+            world.steps(240);
+            see(&mut world, cloth, false);
+            world.steps(200);
+            see(&mut world, cloth, true);
+            let before = shape(&world, cloth);
+            let mut stretch = 0.0f32;
+            for _ in 0..30 {
+                world.steps(1);
+                assert!(!world.get::<ClothRest>(cloth).is_asleep(), "{held:?}");
+                stretch = stretch.max(world.stretch(cloth).max);
+            }
+            let away = furthest(&before, &shape(&world, cloth));
+            // Its holder has turned by 1 rad meanwhile: the air comes from elsewhere, and it swings round, half a second long.
+            assert!(away < 0.3, "{held:?}, {unseen}: {away}");
+            for i in 0..144 {
+                let speed = world.velocity(cloth, i).length();
+                assert!((speed - RUN).abs() < 1.5, "{held:?}, {unseen}: {speed}");
+            }
+            stretch
+        });
+        assert!(
+            stretches[1] < 2.0 * stretches[0] + 0.01,
+            "{held:?}: {stretches:?}"
+        );
+    }
+}
+
+#[test]
+fn it_stays_awake_without_the_setting_and_with_targets_and_wakes_by_nothing_else() {
+    let (mut world, cloth) = cape(Held::Pinned, false);
+    see(&mut world, cloth, false);
+    world.steps(10);
+    assert!(!world.get::<ClothRest>(cloth).is_asleep());
+    world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = true);
+    world.steps(1);
+    assert!(world.get::<ClothRest>(cloth).is_asleep());
+    world.edit::<ClothRest>(cloth, ClothRest::wake);
+    world.edit::<ClothMaterial>(cloth, |material| material.damping = 1.0);
+    world.edit::<ClothForces>(cloth, |forces| forces.add_force(100, Vec3::X));
+    let shape_before = shape(&world, cloth);
+    for paused in [false, true, false] {
+        world.settings(|s| s.paused = paused);
+        world.steps(5);
+        assert!(world.get::<ClothRest>(cloth).is_unseen());
+        assert!(furthest(&shape_before, &shape(&world, cloth)) < 1e-3);
+    }
+    let mut targets = world.app.world_mut().entity_mut(cloth);
+    targets.insert(ClothMotionTargets::default());
+    world.steps(1);
+    assert!(!world.get::<ClothRest>(cloth).is_asleep());
+}
+
+/// While it is paused it may be seen again; it goes on with the simulation.
+#[test]
+fn it_comes_back_during_a_pause() {
+    for held in ALL {
+        let (mut world, cloth) = cape(held, true);
+        world.steps(240);
+        see(&mut world, cloth, false);
+        world.steps(60);
+        world.settings(|s| s.paused = true);
+        world.steps(3);
+        see(&mut world, cloth, true);
+        world.steps(3);
+        assert!(world.positions(cloth).iter().all(|p| p.is_finite()));
+        world.settings(|s| s.paused = false);
+        let mut stretch = 0.0f32;
+        for _ in 0..30 {
+            world.steps(1);
+            stretch = stretch.max(world.stretch(cloth).max);
+        }
+        assert!(stretch < 0.1, "{held:?}: {stretch}");
+        assert!(!world.get::<ClothRest>(cloth).is_asleep());
+    }
+}
