@@ -100,7 +100,8 @@ pub(super) fn dress_cloths(
                         let path = format!("{folder}/{}_{kind}.png", fabric.name());
                         let settings = move |settings: &mut ImageLoaderSettings| {
                             settings.is_srgb = texels == Texels::Color;
-                            settings.sampler = repeating();
+                            settings.sampler =
+                                repeating(fabric.has_holes() && texels == Texels::Color);
                         };
                         server.load_builder().with_settings(settings).load(path)
                     }))
@@ -180,14 +181,19 @@ fn put_on(material: &mut StandardMaterial, [albedo, normal, roughness]: &[Handle
     material.metallic_roughness_texture = Some(roughness.clone());
 }
 
-fn repeating() -> ImageSampler {
+/// Of a texture that repeats. A texel that is a hole or none is read from one copy alone: means of copies would be neither.
+fn repeating(has_holes: bool) -> ImageSampler {
     ImageSampler::Descriptor(ImageSamplerDescriptor {
         address_mode_u: ImageAddressMode::Repeat,
         address_mode_v: ImageAddressMode::Repeat,
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
-        mipmap_filter: ImageFilterMode::Linear,
-        anisotropy_clamp: 8,
+        mipmap_filter: if has_holes {
+            ImageFilterMode::Nearest
+        } else {
+            ImageFilterMode::Linear
+        },
+        anisotropy_clamp: if has_holes { 1 } else { 8 },
         ..ImageSamplerDescriptor::default()
     })
 }

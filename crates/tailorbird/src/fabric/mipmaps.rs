@@ -7,7 +7,7 @@ use bevy_render::render_resource::TextureFormat;
 /// What the numbers of a texture are, and so what their mean is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texels {
-    /// Colours in sRGB: the mean is that of the light. Where some of it is open, the smaller copies are open in the same part.
+    /// Colours in sRGB: the mean is that of the light. Where some of it is open, as many texels of the smaller copies are.
     Color,
     /// Directions: the mean has unit length.
     Normal,
@@ -33,17 +33,37 @@ pub fn with_mipmaps(mut full: Image, texels: Texels) -> Image {
     let linear: [f32; 256] = std::array::from_fn(|v| (v as f32 / 255.0).powf(2.2));
     let mut start = 0;
     let mut levels = 1;
+    let has_holes = texels == Texels::Color && data.chunks_exact(4).any(|texel| texel[3] < 255);
+    // What is written are zeros and ones, what is averaged further are their means.
+    let mut cover: Vec<f32> = if has_holes {
+        data.chunks_exact(4)
+            .map(|texel| f32::from(texel[3]) / 255.0)
+            .collect()
+    } else {
+        Vec::new()
+    };
     data.reserve(data.len() / 2);
     while width > 1 && height > 1 {
         let (next_width, next_height) = (width / 2, height / 2);
+        let first = data.len();
+        let mut next_cover = Vec::new();
         for y in 0..next_height {
             for x in 0..next_width {
-                let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
-                    let at = start + 4 * ((2 * y + dy) * width + 2 * x + dx);
+                let four = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                    .map(|(dx, dy)| (2 * y + dy) * width + 2 * x + dx);
+                if has_holes {
+                    next_cover.push(0.25 * four.iter().map(|i| cover[*i]).sum::<f32>());
+                }
+                let four = four.map(|i| {
+                    let at = start + 4 * i;
                     [data[at], data[at + 1], data[at + 2], data[at + 3]]
                 });
                 data.extend_from_slice(&mean(four, texels, &linear));
             }
+        }
+        if has_holes {
+            scatter(&mut data[first..], next_cover.clone(), next_width);
+            cover = next_cover;
         }
         start += 4 * width * height;
         (width, height) = (next_width, next_height);
@@ -51,6 +71,45 @@ pub fn with_mipmaps(mut full: Image, texels: Texels) -> Image {
     }
     full.texture_descriptor.mip_level_count = levels;
     full
+}
+
+/// Makes texels open or not, so that as many of them are covered around each place as the mean says: a net from afar is sheer, where a
+/// threshold would close or lose it. By error diffusion (Floyd and Steinberg 1976; for alpha tests: Yuksel 2018).
+fn scatter(texels: &mut [u8], mut cover: Vec<f32>, width: usize) {
+    let height = cover.len() / width;
+    for y in 0..height {
+        for step in 0..width {
+            // To and fro, and not quite at a half: else even areas turn into stripes.
+            let (x, ahead) = if y % 2 == 0 {
+                (step, 1)
+            } else {
+                (width - 1 - step, width - 1)
+            };
+            let at = y * width + x;
+            let wanted = cover[at];
+            let covered = wanted > 0.5 + 0.25 * noise(at);
+            texels[4 * at + 3] = if covered { 255 } else { 0 };
+            let error = wanted - f32::from(u8::from(covered));
+            // Tiles repeat from left to right.
+            let beside = |by: usize| (x + by) % width;
+            let mut give = |x: usize, y: usize, part: f32| {
+                if y < height {
+                    cover[y * width + x] += part * error;
+                }
+            };
+            give(beside(ahead), y, 7.0 / 16.0);
+            give(beside(width - ahead), y + 1, 3.0 / 16.0);
+            give(x, y + 1, 5.0 / 16.0);
+            give(beside(ahead), y + 1, 1.0 / 16.0);
+        }
+    }
+}
+
+/// From -1 to 1, the same for the same number.
+fn noise(i: usize) -> f32 {
+    let mut bits = (i as u32).wrapping_mul(0x9e37_79b9);
+    bits = (bits ^ (bits >> 15)).wrapping_mul(0x85eb_ca6b);
+    (bits >> 8) as f32 / (1 << 23) as f32 - 1.0
 }
 
 fn mean(four: [[u8; 4]; 4], texels: Texels, linear: &[f32; 256]) -> [u8; 4] {
@@ -107,6 +166,53 @@ mod tests {
         }
         for texel in checkers(Texels::Value, black_and_white).chunks(4) {
             assert_eq!(texel, [128, 128, 128, 255]);
+        }
+    }
+
+    #[test]
+    fn from_afar_as_much_is_open() {
+        const SIDE: u32 = 256;
+        // A net, and beside it what is closed and what is open.
+        let texel = |i: u32| {
+            let (x, y) = (i % SIDE, i / SIDE);
+            let closed = match x / 64 {
+                0 | 1 => x % 8 < 2 || y % 8 < 1,
+                column => column == 2,
+            };
+            [200, 200, 200, if closed { 255 } else { 0 }]
+        };
+        let size = Extent3d {
+            width: SIDE,
+            height: SIDE,
+            depth_or_array_layers: 1,
+        };
+        let full = Image::new(
+            size,
+            TextureDimension::D2,
+            (0..SIDE * SIDE).flat_map(texel).collect(),
+            TextureFormat::Rgba8UnormSrgb,
+            RenderAssetUsages::RENDER_WORLD,
+        );
+        let data = with_mipmaps(full, Texels::Color).data.unwrap_or_default();
+        let (mut start, mut side) = (0, SIDE as usize);
+        // 1 - 6/8 · 7/8 of the net is closed.
+        let expected = [0.34375, 0.34375, 1.0, 0.0];
+        while side >= 32 {
+            let level = &data[start..start + 4 * side * side];
+            let mut covered = [0.0; 4];
+            for (i, texel) in level.chunks(4).enumerate() {
+                assert!(texel[3] == 0 || texel[3] == 255);
+                covered[4 * (i % side) / side] += f32::from(texel[3]) / 255.0;
+            }
+            for (found, expected) in covered.iter().zip(expected) {
+                let found = 4.0 * found / (side * side) as f32;
+                assert!(
+                    (found - expected).abs() < 0.02,
+                    "{side}: {found} {expected}"
+                );
+            }
+            start += level.len();
+            side /= 2;
         }
     }
 

@@ -122,14 +122,13 @@ impl Fabric {
             Self::Rubber => Color::srgb(0.19, 0.19, 0.19),
             _ => dye,
         };
-        let has_holes = self == Self::Lace && textured;
         StandardMaterial {
             base_color,
             perceptual_roughness,
             reflectance,
             metallic: 0.0,
             diffuse_transmission: through,
-            alpha_mode: if has_holes {
+            alpha_mode: if textured && self.has_holes() {
                 AlphaMode::AlphaToCoverage
             } else {
                 AlphaMode::Opaque
@@ -138,6 +137,11 @@ impl Fabric {
             cull_mode: None,
             ..StandardMaterial::default()
         }
+    }
+
+    /// Whether there is nothing at some places of its texture.
+    const fn has_holes(self) -> bool {
+        matches!(self, Self::Lace)
     }
 
     /// The side of one tile of its textures \[m\].
