@@ -1,11 +1,16 @@
 //! The motion vectors of cloth are those of its vertices.
 
 use bevy::{
-    asset::uuid_handle,
+    anti_alias::taa::TemporalAntiAliasing,
+    asset::{RenderAssetUsages, uuid_handle},
     core_pipeline::{prepass::MotionVectorPrepass, tonemapping::Tonemapping},
+    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
     pbr::Material,
     prelude::*,
-    render::{pipelined_rendering::PipelinedRenderingPlugin, render_resource::AsBindGroup},
+    render::{
+        pipelined_rendering::PipelinedRenderingPlugin,
+        render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat},
+    },
     shader::{Shader, ShaderRef},
     time::TimeUpdateStrategy,
 };
@@ -238,5 +243,96 @@ fn the_material_follows_the_one_it_stands_for() {
         world
             .get::<MeshMaterial3d<StandardMaterial>>(cloth)
             .is_none()
+    );
+}
+
+/// Light and dark fields, 24 across.
+fn chequered(app: &mut Offscreen) -> Handle<StandardMaterial> {
+    const FIELDS: f32 = 24.0;
+    let size = Extent3d {
+        width: 2,
+        height: 2,
+        depth_or_array_layers: 1,
+    };
+    let texels = [230, 40, 40, 230].map(|grey: u8| [grey, grey, grey, 255]);
+    let mut image = Image::new(
+        size,
+        TextureDimension::D2,
+        texels.concat(),
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::all(),
+    );
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        ..ImageSamplerDescriptor::nearest()
+    });
+    let world = app.app.world_mut();
+    let image = world.resource_mut::<Assets<Image>>().add(image);
+    let material = StandardMaterial {
+        base_color_texture: Some(image),
+        unlit: true,
+        uv_transform: bevy::math::Affine2::from_scale(Vec2::splat(0.5 * FIELDS)),
+        ..default()
+    };
+    world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(material)
+}
+
+/// How much contrast is left of a chequered sheet that falls past a camera with temporal anti-aliasing: mean difference of neighbours
+/// in a column of pixels, 0 to 255.
+fn contrast_while_it_falls(test: &str, with_plugin: bool) -> Option<f32> {
+    let mut app = Offscreen::with_plugins(test, SIZE, |plugins| {
+        let plugins = plugins.disable::<PipelinedRenderingPlugin>();
+        if with_plugin {
+            plugins.add(ClothMotionVectorsPlugin)
+        } else {
+            plugins
+        }
+    })?;
+    let fixed = Time::<Fixed>::from_hz(60.0);
+    let frame = TimeUpdateStrategy::ManualDuration(fixed.timestep());
+    let world = app.app.world_mut();
+    world.insert_resource(fixed);
+    world.insert_resource(frame);
+    world.insert_resource(Wind::vacuum());
+    let material = chequered(&mut app);
+    let target = app.target();
+    let world = app.app.world_mut();
+    world.spawn((
+        Camera3d::default(),
+        target,
+        Msaa::Off,
+        Tonemapping::None,
+        TemporalAntiAliasing::default(),
+        Projection::from(PerspectiveProjection {
+            fov: FOV,
+            ..default()
+        }),
+        Transform::from_xyz(0.0, -1.0, AWAY),
+    ));
+    let cloth = Cloth::grid(Vec2::splat(3.0), UVec2::splat(12)).centered();
+    world.spawn((cloth, ClothSleep::never(), MeshMaterial3d(material)));
+    app.update(30);
+    let picture = app.picture_in_motion();
+    keep(&picture, &format!("taa_{with_plugin}"));
+    let column = |y: u32| f32::from(pixel(&picture, UVec2::new(SIZE.x / 2, y))[0]);
+    let (from, to) = (SIZE.y / 4, 3 * SIZE.y / 4);
+    let steps = (from..to).map(|y| (column(y + 1) - column(y)).abs());
+    Some(steps.sum::<f32>() / (to - from) as f32)
+}
+
+/// Without its motion vectors a moving cloth is averaged with where it was, and its pattern is lost.
+#[test]
+fn temporal_anti_aliasing_keeps_the_pattern_of_a_falling_sheet() {
+    let test = "temporal anti-aliasing of a falling sheet";
+    let Some(with) = contrast_while_it_falls(test, true) else {
+        return;
+    };
+    let without = contrast_while_it_falls(test, false).expect("as before");
+    assert!(
+        with > 1.3 * without,
+        "{with} with motion vectors, {without} without"
     );
 }
