@@ -4,6 +4,7 @@ use bevy::{
     core_pipeline::prepass::DepthPrepass,
     gizmos::config::GizmoConfigStore,
     pbr::wireframe::{Wireframe, WireframeColor},
+    post_process::dof::{DepthOfField, DepthOfFieldMode},
     prelude::*,
 };
 use tailorbird::{prelude::*, sphere_controls::move_spheres};
@@ -14,6 +15,7 @@ use super::{
     crates::CratesPlugin,
     gamepad::GamepadPlugin,
     garment,
+    hand::HandPlugin,
     moving::MovingPlugin,
     scenes::{SceneAssets, SceneCloth, SceneEntity, SceneKind, SceneSphere, look, spawn_scene},
     settings::DemoSettings,
@@ -42,6 +44,7 @@ impl Plugin for DemoPlugin {
             MovingPlugin,
             CratesPlugin,
             GamepadPlugin,
+            HandPlugin,
             TouchPlugin,
         ))
         .insert_resource(self.settings.clone())
@@ -60,6 +63,7 @@ impl Plugin for DemoPlugin {
                 apply_wireframe,
                 apply_gizmos,
                 apply_picking,
+                apply_lens,
             )
                 .chain()
                 .in_set(ApplySettings)
@@ -254,6 +258,27 @@ fn apply_picking(
             ClothPickingBackend::Ray => commands.entity(camera).remove::<DepthPrepass>(),
             ClothPickingBackend::Depth => commands.entity(camera).insert(DepthPrepass),
         };
+    }
+}
+
+/// The camera's focus is sharp.
+fn apply_lens(
+    mut commands: Commands,
+    settings: Res<DemoSettings>,
+    cameras: Query<(Entity, &OrbitCamera)>,
+) {
+    let look = settings.look;
+    for (camera, orbit) in &cameras {
+        if look.depth_of_field {
+            commands.entity(camera).insert(DepthOfField {
+                mode: DepthOfFieldMode::Bokeh,
+                focal_distance: orbit.distance,
+                aperture_f_stops: look.f_number,
+                ..default()
+            });
+        } else {
+            commands.entity(camera).remove::<DepthOfField>();
+        }
     }
 }
 

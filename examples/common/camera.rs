@@ -5,10 +5,13 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::{
     input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit},
+    post_process::dof::DepthOfField,
     prelude::*,
 };
 use bevy_egui::input::EguiWantsInput;
 use tailorbird::prelude::*;
+
+use super::compare::Beside;
 
 /// Drives every [`OrbitCamera`].
 pub struct OrbitCameraPlugin;
@@ -17,7 +20,7 @@ impl Plugin for OrbitCameraPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             RunFixedMainLoop,
-            (turn_by_mouse, turn_by_keys, place_cameras)
+            (turn_by_mouse, turn_by_keys, follow, place_cameras)
                 .chain()
                 .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
         );
@@ -37,7 +40,13 @@ pub struct OrbitCamera {
     pub distance: f32,
     /// The part of the picture's width at the right that something covers [-]: the focus is in the middle of the rest.
     pub covered: f32,
+    /// Added to the focus: over which point of the ground what is followed is [m].
+    pub followed: Option<Vec3>,
 }
+
+/// On what a camera goes along with.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct Followed;
 
 impl OrbitCamera {
     /// How far up and down it goes [rad].
@@ -53,6 +62,7 @@ impl OrbitCamera {
             pitch: pitch.to_radians(),
             distance,
             covered: 0.0,
+            followed: None,
         }
     }
 
@@ -76,7 +86,8 @@ impl OrbitCamera {
     fn transform(&self, width: f32) -> Transform {
         let rotation = self.rotation();
         let aside = 0.5 * self.covered * width * self.distance;
-        let position = self.focus + rotation * Vec3::new(aside, 0.0, self.distance);
+        let focus = self.focus + self.followed.unwrap_or_default();
+        let position = focus + rotation * Vec3::new(aside, 0.0, self.distance);
         Transform::from_translation(position.with_y(position.y.max(0.05))).with_rotation(rotation)
     }
 }
@@ -172,11 +183,43 @@ fn turn_by_keys(
     }
 }
 
+/// Goes along over the ground, a little late.
+fn follow(
+    time: Res<Time>,
+    things: Query<&Transform, (With<Followed>, Without<Beside>, Without<OrbitCamera>)>,
+    mut cameras: Query<&mut OrbitCamera>,
+) {
+    /// [s].
+    const LATE: f32 = 0.35;
+    let place = things.iter().next().map(|at| at.translation.with_y(0.0));
+    let part = 1.0 - (-time.delta_secs() / LATE).exp();
+    for mut camera in &mut cameras {
+        let followed = match (camera.followed, place) {
+            (Some(before), Some(now)) => Some(before.lerp(now, part)),
+            (_, now) => now,
+        };
+        if camera.followed != followed {
+            camera.followed = followed;
+        }
+    }
+}
+
 /// Puts the cameras where they belong.
 pub fn place_cameras(
-    mut cameras: Query<(&OrbitCamera, &Projection, &mut Transform), Changed<OrbitCamera>>,
+    mut cameras: Query<
+        (
+            &OrbitCamera,
+            &Projection,
+            &mut Transform,
+            Option<&mut DepthOfField>,
+        ),
+        Changed<OrbitCamera>,
+    >,
 ) {
-    for (orbit, projection, mut transform) in &mut cameras {
+    for (orbit, projection, mut transform, lens) in &mut cameras {
+        if let Some(mut lens) = lens {
+            lens.focal_distance = orbit.distance;
+        }
         let width = match projection {
             Projection::Perspective(p) => 2.0 * (0.5 * p.fov).tan() * p.aspect_ratio,
             _ => 0.0,

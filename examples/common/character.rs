@@ -6,6 +6,7 @@ use bevy::prelude::*;
 use tailorbird::prelude::*;
 
 use super::{
+    camera::Followed,
     moving::Moving,
     scenes::{MaterialOf, SceneAssets, SceneEntity},
 };
@@ -90,7 +91,9 @@ pub fn spawn(commands: &mut Commands, assets: &mut SceneAssets) -> Entity {
     let lying = Quat::from_rotation_z(0.5 * PI);
     let below = |length: f32| Transform::from_xyz(0.0, -0.5 * length, 0.0);
 
+    let start = root(0.0);
     let root = bone(commands, None, root);
+    commands.entity(root).insert((Followed, start));
     let pelvis = bone(commands, Some(root), pelvis);
     flesh(
         commands,

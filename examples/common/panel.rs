@@ -11,7 +11,7 @@ use super::{
     notices::{Notices, problems},
     plot::performance,
     scene_list::scene_list,
-    settings::DemoSettings,
+    settings::{DemoSettings, Look},
     status::Status,
     thumbnails::Pictures,
 };
@@ -240,6 +240,9 @@ fn look(ui: &mut Ui, settings: &mut DemoSettings) {
             ui.checkbox(value, name);
         }
     });
+    let look = &mut settings.look;
+    let lens = Slider::new(&mut look.f_number, Look::F_NUMBERS).logarithmic(true);
+    ui.add_enabled(look.depth_of_field, lens.text("f-number"));
 }
 
 fn keys(ui: &mut Ui) {

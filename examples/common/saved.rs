@@ -348,6 +348,14 @@ impl SavedSettings {
         s.solver = self.solver.map_or(s.solver, Into::into);
         s.picking = self.picking.map_or(s.picking, Into::into);
         s.paused = self.paused.unwrap_or(s.paused);
+        let f_number = self.look.map(|look| look.f_number);
+        take(
+            &mut s.look.f_number,
+            f_number,
+            "look.f_number",
+            Look::F_NUMBERS,
+            "",
+        )?;
         s.look = self.look.unwrap_or(s.look);
         Ok(settings)
     }

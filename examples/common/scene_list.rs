@@ -6,7 +6,7 @@ use egui::{Align2, FontId, Rect, Response, Sense, Ui, Vec2, WidgetInfo, WidgetTy
 use super::{scenes::SceneKind, settings::DemoSettings, thumbnails::Pictures};
 
 /// Pictures in a row.
-const COLUMNS: usize = 4;
+const COLUMNS: usize = 5;
 /// Of a name [points].
 const NAME_HEIGHT: f32 = 17.0;
 /// Between pictures [points].

@@ -5,7 +5,7 @@ use std::{f32::consts::FRAC_PI_2, fmt, str::FromStr};
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tailorbird::prelude::*;
 
-use super::{camera::OrbitCamera, character, crates, garment, props, settings::DemoSettings};
+use super::{camera::OrbitCamera, character, crates, fan, garment, props, settings::DemoSettings};
 
 /// Everything that a scene spawns, so that it can be cleared away.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -42,11 +42,13 @@ pub enum SceneKind {
     Garment,
     /// Bodies of a physics engine fall on a sheet that carries them.
     Crates,
+    /// A silk curtain before a fan that turns to and fro.
+    Fan,
 }
 
 impl SceneKind {
     /// All of them, in the order of the keys from 1 on.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Curtain,
         Self::Flag,
         Self::Tablecloth,
@@ -55,6 +57,7 @@ impl SceneKind {
         Self::Banner,
         Self::Garment,
         Self::Crates,
+        Self::Fan,
     ];
 
     /// Its name in the command line, the panel and the names of pictures.
@@ -68,6 +71,7 @@ impl SceneKind {
             Self::Banner => "banner",
             Self::Garment => "garment",
             Self::Crates => "crates",
+            Self::Fan => "fan",
         }
     }
 
@@ -77,7 +81,7 @@ impl SceneKind {
             Self::Curtain | Self::Tablecloth | Self::Cape | Self::Banner | Self::Garment => {
                 "cotton"
             }
-            Self::Flag => "silk",
+            Self::Flag | Self::Fan => "silk",
             Self::Ball | Self::Crates => "denim",
         }
     }
@@ -117,9 +121,12 @@ impl SceneKind {
                 },
                 ..Wind::steady(Vec3::new(0.7, 0.0, 1.4))
             },
-            Self::Tablecloth | Self::Ball | Self::Cape | Self::Garment | Self::Crates => {
-                Wind::default()
-            }
+            Self::Tablecloth
+            | Self::Ball
+            | Self::Cape
+            | Self::Garment
+            | Self::Crates
+            | Self::Fan => Wind::default(),
         }
     }
 
@@ -133,6 +140,7 @@ impl SceneKind {
             Self::Banner => Vec2::new(1.2, 1.5),
             Self::Garment => Vec2::new(1.0, 1.0),
             Self::Crates => Vec2::new(2.4, 2.4),
+            Self::Fan => Vec2::new(2.4, 1.6),
         }
     }
 
@@ -147,6 +155,7 @@ impl SceneKind {
             Self::Banner => Color::srgb(0.10, 0.30, 0.55),
             // It has materials of its own.
             Self::Garment => Color::WHITE,
+            Self::Fan => Color::srgb(0.30, 0.56, 0.52),
             Self::Crates => Color::srgb(0.24, 0.30, 0.36),
         }
     }
@@ -155,7 +164,7 @@ impl SceneKind {
     pub const fn sphere_radius(self) -> f32 {
         match self {
             Self::Curtain => 0.25,
-            Self::Flag | Self::Cape | Self::Banner | Self::Crates => 0.2,
+            Self::Flag | Self::Cape | Self::Banner | Self::Crates | Self::Fan => 0.2,
             Self::Garment => 0.1,
             Self::Tablecloth => 0.5,
             Self::Ball => 0.3,
@@ -173,6 +182,7 @@ impl SceneKind {
             Self::Banner => Vec3::new(-1.6, radius, 1.6),
             Self::Garment => Vec3::new(0.0, radius, 0.5),
             Self::Crates => Vec3::new(0.0, radius, 0.0),
+            Self::Fan => Vec3::new(0.7, radius, 0.6),
         }
     }
 
@@ -183,10 +193,11 @@ impl SceneKind {
             Self::Flag => (Vec3::new(0.8, 1.75, 0.0), -16.0, 2.0, 4.2),
             Self::Tablecloth => (Vec3::new(0.0, 0.42, 0.0), 30.0, 20.0, 3.7),
             Self::Ball => (Vec3::new(0.0, 0.85, 0.0), 28.0, 20.0, 4.3),
-            Self::Cape => (Vec3::new(0.0, 0.95, 0.0), 20.0, 12.0, 6.2),
+            Self::Cape => (Vec3::new(0.0, 0.95, 0.0), 20.0, 12.0, 4.6),
             Self::Banner => (Vec3::new(0.0, 1.45, 0.0), 25.0, 8.0, 7.5),
             Self::Garment => (Vec3::new(0.0, 0.64, 0.0), 55.0, 10.0, 2.7),
             Self::Crates => (Vec3::new(0.0, 1.05, 0.0), 28.0, 27.0, 5.6),
+            Self::Fan => (Vec3::new(0.0, 1.0, 0.4), 38.0, 10.0, 4.9),
         };
         OrbitCamera::new(focus, yaw, pitch, distance)
     }
@@ -203,7 +214,7 @@ impl SceneKind {
         let grid = Cloth::grid(self.size(), self.resolution(longer));
         match self {
             Self::Flag => Some(grid),
-            Self::Curtain | Self::Cape | Self::Banner => {
+            Self::Curtain | Self::Cape | Self::Banner | Self::Fan => {
                 Some(grid.with_origin(Vec2::new(0.5, 0.0)))
             }
             Self::Tablecloth | Self::Ball | Self::Crates => Some(grid.centered()),
@@ -221,6 +232,7 @@ impl SceneKind {
             Self::Ball => corners(&GridCorner::ALL, Vec3::new(0.9, 0.9, 0.0)),
             Self::Cape => character::collar(self.size().x, self.resolution(longer).x),
             Self::Banner => props::rings(self.resolution(longer).x),
+            Self::Fan => fan::pleats(self.size().x, self.resolution(longer).x),
         }
     }
 
@@ -242,6 +254,7 @@ impl SceneKind {
             // Within the chest, and in front of the mast.
             Self::Cape => Transform::from_xyz(0.0, 0.21, 0.0),
             Self::Banner => Transform::from_xyz(0.0, 2.32, 0.07),
+            Self::Fan => Transform::from_xyz(0.0, 1.9, 0.0),
         }
     }
 }
@@ -361,6 +374,7 @@ pub fn spawn_scene(commands: &mut Commands, settings: &DemoSettings, assets: &mu
             props::spawn_posts(commands, assets, 1.1, 1.6);
             crates::spawn(commands, assets);
         }
+        SceneKind::Fan => fan::spawn(commands, assets),
     }
 }
 

@@ -8,7 +8,7 @@
 //! 0.6 press                # the left mouse button
 //! 0.6 move 0.2 -0.1 over 1 # to the right and down, in heights of the picture, within a time [s]
 //! 1.6 wheel -2             # notches
-//! 1.8 key P                # P, R, N, Space, 1 to 8, Left, Right, Up, Down, PageUp, PageDown, Shift
+//! 1.8 key P                # P, R, N, Space, 1 to 9, Left, Right, Up, Down, PageUp, PageDown, Shift
 //! 2.0 release
 //! 2.0 hold Up for 1        # a key, for a time [s]
 //! 3.0 wind 5 0 1           # [m/s]
@@ -33,7 +33,7 @@ Script: one line for each action: the time [s], the action, its values. Empty li
   0.6 press                 the left mouse button
   0.6 move 0.2 -0.1 over 1  to the right and down, in heights of the picture, within a time [s]
   1.6 wheel -2              notches
-  1.8 key P                 P, R, N, Space, 1 to 8, Left, Right, Up, Down, PageUp, PageDown, Shift
+  1.8 key P                 P, R, N, Space, 1 to 9, Left, Right, Up, Down, PageUp, PageDown, Shift
   2.0 release
   2.0 hold Up for 1         a key, for a time [s]
   3.0 wind 5 0 1            [m/s]
@@ -122,6 +122,7 @@ impl Script {
             SceneKind::Banner => BANNER,
             SceneKind::Garment => GARMENT,
             SceneKind::Crates => CRATES,
+            SceneKind::Fan => FAN,
         };
         // A test reads all of them.
         text.parse().unwrap_or_default()
@@ -202,6 +203,15 @@ const CRATES: &str = "
 4.1 press
 4.1 move 0.0 0.15 over 0.6
 5.2 release
+";
+
+/// The fan sweeps by itself; a corner is lifted, and the ball goes through below.
+const FAN: &str = "
+2.0 point cloth 0.9 0.95
+2.1 press
+2.1 move -0.1 -0.2 over 0.8
+3.4 release
+4.5 hold Up for 0.8
 ";
 
 impl FromStr for Script {
@@ -293,6 +303,7 @@ fn held(name: &str, seconds: &str) -> Result<Action, String> {
         "6" => KeyCode::Digit6,
         "7" => KeyCode::Digit7,
         "8" => KeyCode::Digit8,
+        "9" => KeyCode::Digit9,
         "Left" => KeyCode::ArrowLeft,
         "Right" => KeyCode::ArrowRight,
         "Up" => KeyCode::ArrowUp,

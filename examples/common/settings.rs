@@ -76,6 +76,10 @@ pub struct Look {
     pub colliders: bool,
     /// Zones of wind, and arrows for the air.
     pub air: bool,
+    /// Blur of what is nearer or farther than what the camera looks at.
+    pub depth_of_field: bool,
+    /// Of the lens: its focal length over the width of its opening; the smaller, the more is blurred.
+    pub f_number: f32,
 }
 
 impl Default for Look {
@@ -92,6 +96,8 @@ impl Default for Look {
             bounds: false,
             colliders: false,
             air: false,
+            depth_of_field: false,
+            f_number: 1.0,
         }
     }
 }
@@ -182,8 +188,11 @@ impl DemoSettings {
 }
 
 impl Look {
+    /// What the lens may be.
+    pub const F_NUMBERS: std::ops::RangeInclusive<f32> = 0.2..=16.0;
+
     /// All that can be shown, by name.
-    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 11] {
+    pub fn toggles(&mut self) -> [(&'static str, &mut bool); 12] {
         [
             ("texture", &mut self.texture),
             ("wireframe", &mut self.wireframe),
@@ -196,6 +205,7 @@ impl Look {
             ("bounds", &mut self.bounds),
             ("colliders", &mut self.colliders),
             ("air", &mut self.air),
+            ("depth-of-field", &mut self.depth_of_field),
         ]
     }
 

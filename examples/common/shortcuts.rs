@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::{scenes::SceneKind, settings::DemoSettings};
 
 /// The keys that show a scene.
-const SCENES: [KeyCode; 8] = [
+const SCENES: [KeyCode; 9] = [
     KeyCode::Digit1,
     KeyCode::Digit2,
     KeyCode::Digit3,
@@ -14,6 +14,7 @@ const SCENES: [KeyCode; 8] = [
     KeyCode::Digit6,
     KeyCode::Digit7,
     KeyCode::Digit8,
+    KeyCode::Digit9,
 ];
 
 /// Does what the keys say.
@@ -30,6 +31,9 @@ pub fn use_shortcuts(keys: Option<Res<ButtonInput<KeyCode>>>, mut settings: ResM
     if keys.just_pressed(KeyCode::KeyN) {
         settings.paused = true;
         settings.single_steps = settings.single_steps.wrapping_add(1);
+    }
+    if keys.just_pressed(KeyCode::KeyB) {
+        settings.look.depth_of_field = !settings.look.depth_of_field;
     }
     if keys.just_pressed(KeyCode::KeyC) {
         settings.beside = !settings.beside;

@@ -6,6 +6,7 @@ use bevy_egui::{EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContext
 use super::{
     ask::{Ask, AskPlugin, PanelShown},
     camera::OrbitCamera,
+    hand::Hand,
     notices::{Notices, toasts},
     panel::{PanelState, covered, panel_window},
     photo::PhotoPlugin,
@@ -47,6 +48,7 @@ fn show_panel(
     status: Res<Status>,
     mut notices: ResMut<Notices>,
     thumbnails: Option<Res<Thumbnails>>,
+    hand: Res<Hand>,
     mut asks: MessageWriter<Ask>,
 ) -> Result {
     let context = contexts.ctx_mut()?;
@@ -69,6 +71,7 @@ fn show_panel(
         beside(context, &status);
     }
     toasts(context, &notices, shown.0);
+    hand.draw(context);
     Ok(())
 }
 

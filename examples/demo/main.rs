@@ -1,4 +1,4 @@
-//! A curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt and crates: drag them, pin them, blow at them.
+//! A curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt, crates, a silk curtain before a fan: drag them, pin them, blow at them.
 //!
 //! `cargo run --example demo` opens a window with a panel of sliders; `--help` lists the rest. Without a display it
 //! draws pictures to ./out instead.
@@ -26,11 +26,11 @@ use common::{
 };
 use tailorbird::prelude::*;
 
-/// Real-time cloth: a curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt and crates.
+/// Real-time cloth: a curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt, crates and a silk curtain before a fan.
 #[derive(Parser)]
 #[command(after_help = after_help())]
 struct Arguments {
-    /// curtain, flag, tablecloth, ball, cape, banner, garment or crates
+    /// curtain, flag, tablecloth, ball, cape, banner, garment, crates or fan
     #[arg(long)]
     scene: Option<SceneKind>,
     /// Particles along the longer side of the cloth [default: 128]

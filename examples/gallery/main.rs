@@ -28,7 +28,7 @@ struct Arguments {
     /// The folder for the pictures; it is made if it does not exist
     #[arg(value_name = "DIR")]
     dir: PathBuf,
-    /// curtain, flag, tablecloth, ball, cape, banner, garment or crates; again for more of them [default: all]
+    /// curtain, flag, tablecloth, ball, cape, banner, garment, crates or fan; again for more of them [default: all]
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<SceneKind>,
     /// Width and height [pixels]

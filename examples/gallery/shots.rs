@@ -37,6 +37,7 @@ impl Shots {
             SceneKind::Banner => (5.4, 3.6, BANNER),
             SceneKind::Garment => (3.0, 1.4, GARMENT),
             SceneKind::Crates => (1.2, 0.0, CRATES),
+            SceneKind::Fan => (3.2, 1.0, FAN),
         };
         Ok(Self {
             still,
@@ -107,5 +108,9 @@ const GARMENT: &str = "
 ";
 
 const CRATES: &str = "
+0.0 zoom 0.5
+";
+
+const FAN: &str = "
 0.0 zoom 0.5
 ";

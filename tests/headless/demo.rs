@@ -195,7 +195,7 @@ fn keys_hide_the_panel_go_through_the_scenes_and_turn_the_view() {
     tap(&mut app, KeyCode::KeyH);
     assert!(app.world().resource::<PanelShown>().0);
     tap(&mut app, KeyCode::BracketLeft);
-    assert_eq!(settings(&app).scene, SceneKind::Crates);
+    assert_eq!(settings(&app).scene, SceneKind::Fan);
     tap(&mut app, KeyCode::BracketRight);
     assert_eq!(settings(&app).scene, SceneKind::Curtain);
     frames(&mut app, 2);

@@ -1,10 +1,12 @@
-//! The demo in other hands: fingers drag cloth and turn the view, a gamepad moves the ball.
+//! The demo in other hands: fingers and keys drag cloth, a gamepad moves the ball. And what the camera does by itself.
 
 use bevy::{
     input::{
+        ButtonState,
         gamepad::{GamepadAxis, GamepadButton, RawGamepadButtonChangedEvent, RawGamepadEvent},
         touch::{TouchInput, TouchPhase},
     },
+    post_process::dof::DepthOfField,
     prelude::*,
     window::{PrimaryWindow, WindowEvent},
 };
@@ -12,7 +14,8 @@ use tailorbird::prelude::*;
 
 use crate::{
     common::{
-        camera::OrbitCamera,
+        camera::{Followed, OrbitCamera},
+        hand::Hand,
         scenes::{SceneCloth, SceneKind, SceneSphere},
     },
     demo::*,
@@ -39,8 +42,7 @@ fn on_cloth(app: &mut App) -> (Entity, Vec2) {
     let cloth = one::<With<SceneCloth>>(app);
     let camera = one::<With<OrbitCamera>>(app);
     let place = particle(app, cloth, get::<ClothParticles>(app, cloth).len() / 2);
-    // Beside it: a ray through the particle itself may pass between the triangles around it.
-    (cloth, on_screen(app, camera, place) + Vec2::new(2.0, 1.0))
+    (cloth, on_screen(app, camera, place))
 }
 
 #[test]
@@ -93,6 +95,92 @@ fn two_fingers_turn_and_zoom_and_hold_nothing() {
         (after.distance - expected).abs() < 1e-3 * expected,
         "{after:?}"
     );
+}
+
+#[test]
+fn keys_move_a_hand_that_drags_cloth() {
+    let mut app = demo(SceneKind::Curtain);
+    frames(&mut app, 30);
+    let cloth = one::<With<SceneCloth>>(&mut app);
+    let holds = |app: &App| get::<ClothGrab>(app, cloth).particle();
+    let hand = |app: &App| *app.world().resource::<Hand>();
+    assert_eq!(hand(&app).at, None);
+    tap(&mut app, KeyCode::KeyG);
+    frames(&mut app, 10);
+    let held = holds(&app).expect("held") as usize;
+    assert_eq!(get::<ClothDrag>(&app, cloth).pointer, Hand::POINTER);
+    let (before, at) = (particle(&app, cloth, held), hand(&app).at.expect("shown"));
+    for code in [KeyCode::KeyL, KeyCode::KeyI] {
+        key(&mut app, code, ButtonState::Pressed);
+    }
+    frames(&mut app, 30);
+    for code in [KeyCode::KeyL, KeyCode::KeyI] {
+        key(&mut app, code, ButtonState::Released);
+    }
+    frames(&mut app, 20);
+    let way = hand(&app).at.expect("shown") - at;
+    assert!(way.x > 50.0 && way.y < -50.0, "{way}");
+    let moved = particle(&app, cloth, held) - before;
+    assert!(moved.x > 0.1 && moved.y > 0.1, "{moved}");
+
+    let depth = get::<ClothDrag>(&app, cloth).depth;
+    key(&mut app, KeyCode::KeyO, ButtonState::Pressed);
+    frames(&mut app, 15);
+    key(&mut app, KeyCode::KeyO, ButtonState::Released);
+    // A quarter of a second at 0.8 m/s.
+    let away = get::<ClothDrag>(&app, cloth).depth - depth;
+    assert!((0.15..0.25).contains(&away), "{away}");
+
+    tap(&mut app, KeyCode::KeyP);
+    let user_pins = |app: &App| {
+        let pins = &get::<ClothPins>(app, cloth).pins;
+        pins.iter()
+            .filter(|pin| pin.author == PinAuthor::User)
+            .count()
+    };
+    assert!(user_pins(&app) > 0);
+    tap(&mut app, KeyCode::KeyG);
+    frames(&mut app, 3);
+    assert_eq!(holds(&app), None);
+    tap(&mut app, KeyCode::KeyP);
+    assert_eq!(user_pins(&app), 0);
+    tap(&mut app, KeyCode::Escape);
+    assert_eq!(hand(&app), Hand::default());
+}
+
+#[test]
+fn b_blurs_what_is_not_in_focus() {
+    let mut app = demo(SceneKind::Flag);
+    let camera = one::<With<OrbitCamera>>(&mut app);
+    tap(&mut app, KeyCode::KeyB);
+    frames(&mut app, 2);
+    let lens = get::<DepthOfField>(&app, camera).clone();
+    assert_eq!(lens.focal_distance, view(&mut app).distance);
+    assert_eq!(lens.aperture_f_stops, settings(&app).look.f_number);
+    key(&mut app, KeyCode::Minus, ButtonState::Pressed);
+    frames(&mut app, 10);
+    let farther = get::<DepthOfField>(&app, camera).focal_distance;
+    assert!(farther > lens.focal_distance);
+    assert_eq!(farther, view(&mut app).distance);
+    tap(&mut app, KeyCode::KeyB);
+    frames(&mut app, 2);
+    assert!(app.world().get::<DepthOfField>(camera).is_none());
+}
+
+#[test]
+fn the_camera_goes_along_with_the_wearer_of_the_cape_and_with_nobody_else() {
+    let mut app = demo(SceneKind::Cape);
+    let runner = one::<With<Followed>>(&mut app);
+    for _ in 0..5 {
+        frames(&mut app, 60);
+        let place = get::<Transform>(&app, runner).translation.with_y(0.0);
+        let followed = view(&mut app).followed.expect("followed");
+        // At 3 m/s, a third of a second late.
+        assert!(followed.distance(place) < 1.3, "{followed} {place}");
+    }
+    tap(&mut app, KeyCode::Digit1);
+    frames(&mut app, 3);
+    assert_eq!(view(&mut app).followed, None);
 }
 
 /// A gamepad that nobody touches yet.
