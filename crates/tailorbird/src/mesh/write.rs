@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use bevy_asset::{AssetEvent, AssetId, Assets, RenderAssetUsages};
 use bevy_camera::{primitives::Aabb, visibility::ViewVisibility};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, system::NonSendMarker};
 use bevy_math::Affine3A;
 use bevy_mesh::Mesh;
 use bevy_time::{Fixed, Time};
@@ -89,7 +89,11 @@ pub(super) fn note_seen(
 /// The particles live in the entity's rigid frame, its mesh in its own space: they differ by the scale alone. A mesh of an entity
 /// below lies where that was when the cloth was made. A mesh that would stay as it is, while the simulation is paused or the cloth
 /// sleeps, is left alone, and one that nobody sees as the settings say.
+///
+/// Runs on the main thread, which takes a part of the work: it would only wait for the threads of the pool, of which there is one on a
+/// machine of two cores.
 pub(super) fn follow_cloth(
+    _: NonSendMarker,
     settings: Res<ClothMeshSettings>,
     uploads: Option<Res<VertexUploads>>,
     fixed: Option<Res<Time<Fixed>>>,

@@ -1,9 +1,9 @@
 //! Vectors between two steps, written into interleaved vertices: p (1 − f) + q f.
 
 use bevy_math::Vec3;
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, f32x4, prelude::*};
 
-use super::lanes::{Factor, V3, Window, each_window};
+use super::lanes::{Factor, Reading, V3, Window, each_window, with_scratch};
 use crate::{
     points::Points,
     vertices::{Interleaved, SheetVertices},
@@ -59,7 +59,7 @@ impl Between<'_> {
         }
     }
 
-    fn one(&self, i: usize) -> Vec3 {
+    pub fn one(&self, i: usize) -> Vec3 {
         let [from, to] = self.ends.map(|points| points.get(i));
         let mut v = from * (1.0 - self.fraction) + to * self.fraction;
         if let Some(offsets) = self.offsets {
@@ -101,8 +101,14 @@ pub(crate) fn interleave_sheet(
     first_row: usize,
     to: SheetVertices,
 ) {
-    dispatch!(level, simd => interleave_sheet_with(simd, [positions, normals], first_row, to));
+    with_scratch(3 * to.columns, |row| {
+        dispatch!(level, simd => interleave_sheet_with(simd, [positions, normals], first_row, to, row));
+    });
 }
+
+/// Numbers of a vertex as it is most often: position, normal, UVs and tangent start at these places.
+const USUAL: usize = 12;
+const USUAL_PLACES: [usize; 3] = [0, 3, 8];
 
 #[inline(always)]
 fn interleave_sheet_with<S: Simd>(
@@ -110,6 +116,7 @@ fn interleave_sheet_with<S: Simd>(
     [positions, normals]: [Between; 2],
     first_row: usize,
     to: SheetVertices,
+    row_scratch: &mut [f32],
 ) {
     let SheetVertices {
         words,
@@ -118,6 +125,7 @@ fn interleave_sheet_with<S: Simd>(
         places,
         handedness,
     } = to;
+    let usual = stride == USUAL && places == USUAL_PLACES;
     for (row, vertices) in words.chunks_exact_mut(columns * stride).enumerate() {
         let start = (first_row + row) * columns;
         // The ends of the row one by one.
@@ -134,22 +142,44 @@ fn interleave_sheet_with<S: Simd>(
         if columns < 3 {
             continue;
         }
+        // Each place is needed three times.
+        each_window(
+            simd,
+            0..columns,
+            #[inline(always)]
+            |window| {
+                let place = positions.side_by_side(simd, window, start);
+                let lanes = S::f32s::LEN.min(columns - window.at);
+                for (axis, values) in [place.x, place.y, place.z].into_iter().enumerate() {
+                    let to = &mut row_scratch[axis * columns + window.at..][..lanes];
+                    to.copy_from_slice(&values.as_slice()[..lanes]);
+                }
+            },
+        );
+        let row = &*row_scratch;
         let inner = &mut vertices[stride..(columns - 1) * stride];
         each_window(
             simd,
             0..columns - 2,
             #[inline(always)]
             |window| {
-                let at = start + 1;
-                let place = positions.side_by_side(simd, window, at);
-                let normal = normals.side_by_side(simd, window, at);
-                let left = positions.side_by_side(simd, window, at - 1);
-                let along = positions.side_by_side(simd, window, at + 1) - left;
+                let left = row_at(simd, row, columns, window, 0);
+                let place = row_at(simd, row, columns, window, 1);
+                let right = row_at(simd, row, columns, window, 2);
+                let normal = normals.side_by_side(simd, window, start + 1);
+                let along = right - left;
                 let along = along - Factor(normal.dot(along)) * normal;
-                let tangent = Factor(one_over_length(simd, along)) * along;
+                let inverse = one_over_length(simd, along);
+                let tangent = Factor(inverse) * along;
                 let lanes = S::f32s::LEN.min(columns - 2 - window.at);
-                let vertices = inner[window.at * stride..].chunks_exact_mut(stride);
-                for (k, vertex) in vertices.take(lanes).enumerate() {
+                let vertices = &mut inner[window.at * stride..][..lanes * stride];
+                let all_turn = inverse.simd_gt(S::f32s::splat(simd, 0.0)).all_true();
+                if usual && all_turn && lanes == S::f32s::LEN {
+                    write_usual(simd, [place, normal, tangent], handedness, vertices);
+                    return;
+                }
+                let vertices = vertices.chunks_exact_mut(stride);
+                for (k, vertex) in vertices.enumerate() {
                     set(vertex, places[0], lane(place, k));
                     set(vertex, places[1], lane(normal, k));
                     let mut tangent = lane(tangent, k);
@@ -164,6 +194,64 @@ fn interleave_sheet_with<S: Simd>(
     }
 }
 
+/// Points of a row of three arrays, `by` further on.
+#[inline(always)]
+fn row_at<S: Simd>(simd: S, row: &[f32], columns: usize, window: Window, by: usize) -> V3<S> {
+    V3 {
+        x: Reading(&row[by..]).load_at(simd, window),
+        y: Reading(&row[columns + by..]).load_at(simd, window),
+        z: Reading(&row[2 * columns + by..]).load_at(simd, window),
+    }
+}
+
+/// Writes as many vertices as a vector has lanes, by four numbers at a time: number by number, storing takes longer than computing.
+#[inline(always)]
+fn write_usual<S: Simd>(
+    simd: S,
+    [place, normal, tangent]: [V3<S>; 3],
+    handedness: f32,
+    words: &mut [f32],
+) {
+    let handedness = f32x4::splat(simd, handedness);
+    let vertices = words.as_chunks_mut::<USUAL>().0;
+    for (quarter, vertices) in vertices.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        let first = transposed([
+            four(simd, place.x, quarter),
+            four(simd, place.y, quarter),
+            four(simd, place.z, quarter),
+            four(simd, normal.x, quarter),
+        ]);
+        let last = transposed([
+            four(simd, tangent.x, quarter),
+            four(simd, tangent.y, quarter),
+            four(simd, tangent.z, quarter),
+            handedness,
+        ]);
+        for (k, vertex) in vertices.iter_mut().enumerate() {
+            first[k].store_slice(&mut vertex[..4]);
+            vertex[4] = normal.y.as_slice()[4 * quarter + k];
+            vertex[5] = normal.z.as_slice()[4 * quarter + k];
+            last[k].store_slice(&mut vertex[8..]);
+        }
+    }
+}
+
+#[inline(always)]
+fn four<S: Simd>(simd: S, values: S::f32s, quarter: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &values.as_slice()[4 * quarter..][..4])
+}
+
+#[inline(always)]
+fn transposed<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
+    let [ac, bd] = [[a.zip_low(c), a.zip_high(c)], [b.zip_low(d), b.zip_high(d)]];
+    [
+        ac[0].zip_low(bd[0]),
+        ac[0].zip_high(bd[0]),
+        ac[1].zip_low(bd[1]),
+        ac[1].zip_high(bd[1]),
+    ]
+}
+
 /// 1/|v|; 0 where that is not finite.
 #[inline(always)]
 fn one_over_length<S: Simd>(simd: S, v: V3<S>) -> S::f32s {
@@ -175,7 +263,7 @@ fn one_over_length<S: Simd>(simd: S, v: V3<S>) -> S::f32s {
 }
 
 /// The direction of a vector across a unit normal.
-fn across(v: Vec3, normal: Vec3) -> Vec3 {
+pub(super) fn across(v: Vec3, normal: Vec3) -> Vec3 {
     let v = (v - normal * normal.dot(v)).normalize_or_zero();
     if v == Vec3::ZERO {
         normal.any_orthonormal_vector()
@@ -218,109 +306,4 @@ fn interleave_with<S: Simd>(simd: S, between: Between, first: usize, to: Interle
             }
         },
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::solver::kernels::lanes::levels;
-
-    #[test]
-    fn vectors_come_to_their_vertices_whatever_the_instructions() {
-        let vector = |seed: f32| move |i: usize| Vec3::new(seed, 0.1 * i as f32, -(i as f32)).cos();
-        let points = |seed: f32| (0..70).map(vector(seed)).collect::<Points>();
-        let (mut from, mut to, offsets) = (points(0.1), points(0.9), points(2.0));
-        from.set(5, Vec3::ZERO);
-        to.set(5, Vec3::ZERO);
-        for last in [Last::Unit, Last::Scale(Vec3::new(2.0, 1.0, 0.5))] {
-            for offsets in [None, Some(&offsets)] {
-                for fraction in [0.0, 0.3, 1.0] {
-                    let between = Between {
-                        ends: [&from, &to],
-                        fraction,
-                        offsets,
-                        last,
-                    };
-                    for (first, count) in [(0, 70), (3, 60), (0, 5), (64, 1)] {
-                        let (stride, offset) = (7, 2);
-                        let start = vec![9.0; count * stride];
-                        let mut listed = start.clone();
-                        let list: Vec<u32> = (first as u32..).take(count).collect();
-                        let words = &mut listed;
-                        let place = Interleaved {
-                            words,
-                            stride,
-                            offset,
-                        };
-                        interleave_listed(between, &list, place);
-                        for level in levels() {
-                            let mut all = start.clone();
-                            let words = &mut all;
-                            let place = Interleaved {
-                                words,
-                                stride,
-                                offset,
-                            };
-                            interleave(level, between, first, place);
-                            for (k, (a, b)) in all.iter().zip(&listed).enumerate() {
-                                let own = (2..5).contains(&(k % 7));
-                                let right = if own { (a - b).abs() < 1e-6 } else { *a == 9.0 };
-                                assert!(right, "{k}: {a} {b}");
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_sheet_gets_the_same_vertices_and_tangents_along_its_rows() {
-        for (columns, rows) in [(2, 3), (3, 2), (8, 4), (19, 3), (40, 2)] {
-            let n = columns * rows;
-            let vector = |seed: f32| {
-                move |i: usize| {
-                    let at = Vec3::new((i % columns) as f32, (i / columns) as f32, 0.0);
-                    at + 0.3 * Vec3::new(seed, 0.1 * i as f32, -(i as f32)).cos()
-                }
-            };
-            let points = |seed: f32| (0..n).map(vector(seed)).collect::<Points>();
-            let all = [points(0.1), points(0.9), points(2.0), points(3.0)];
-            let positions = Between {
-                ends: [&all[0], &all[1]],
-                fraction: 0.4,
-                offsets: None,
-                last: Last::Scale(Vec3::splat(1.5)),
-            };
-            let normals = Between {
-                ends: [&all[2], &all[3]],
-                last: Last::Unit,
-                ..positions
-            };
-            let stride = 12;
-            for level in levels() {
-                let mut words = vec![9.0; (n - columns) * stride];
-                let vertices = SheetVertices {
-                    words: &mut words,
-                    stride,
-                    columns,
-                    places: [0, 3, 8],
-                    handedness: -1.0,
-                };
-                interleave_sheet(level, [positions, normals], 1, vertices);
-                for (k, vertex) in words.chunks(stride).enumerate() {
-                    let (i, column) = (k + columns, k % columns);
-                    let at = |place: usize| Vec3::from_slice(&vertex[place..]);
-                    let [left, right] = [column.min(1), (columns - 1 - column).min(1)];
-                    let along = positions.one(i + right) - positions.one(i - left);
-                    let normal = normals.one(i);
-                    assert!(at(0).distance(positions.one(i)) < 1e-5);
-                    assert!(at(3).distance(normal) < 1e-5);
-                    assert!(at(8).distance(across(along, normal)) < 1e-4, "{k}");
-                    assert!((at(8).length() - 1.0).abs() < 1e-5);
-                    assert_eq!([vertex[6], vertex[7], vertex[11]], [9.0, 9.0, -1.0]);
-                }
-            }
-        }
-    }
 }

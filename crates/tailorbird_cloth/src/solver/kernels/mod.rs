@@ -12,6 +12,8 @@ pub mod distance;
 pub mod half_space;
 pub mod hinge;
 pub(crate) mod interleave;
+#[cfg(test)]
+mod interleave_tests;
 pub(crate) mod lanes;
 pub(crate) mod lattice;
 pub(crate) mod limit;
