@@ -13,4 +13,5 @@ mod light;
 mod motion;
 mod offscreen;
 mod pictures;
+mod unseen;
 mod writes;
