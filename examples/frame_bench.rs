@@ -33,7 +33,7 @@ use tailorbird::{mesh::ClothMeshSystems, prelude::*};
 #[derive(Parser)]
 #[command(name = "frame_bench", version)]
 struct Args {
-    /// Cloths and particles along each side, such as 100x32 [default: 1x256 1x128 10x64 100x32 1000x32]
+    /// Cloths and particles along each side, such as 100x32; 0x2 is what frames without cloth take [default: 0x2 1x256 1x128 10x64 100x32 1000x32]
     #[arg(value_name = "COUNTxSIZE", value_parser = scene)]
     scenes: Vec<[u32; 2]>,
 
@@ -53,9 +53,9 @@ struct Args {
 fn scene(text: &str) -> Result<[u32; 2], String> {
     let numbers = text.split_once('x').and_then(|(count, size)| {
         let (count, size) = (count.parse().ok()?, size.parse().ok()?);
-        ((1..=10_000).contains(&count) && (2..=1024).contains(&size)).then_some([count, size])
+        ((0..=10_000).contains(&count) && (2..=1024).contains(&size)).then_some([count, size])
     });
-    numbers.ok_or_else(|| "1 to 10000 cloths of 2 to 1024 particles a side, such as 100x32".into())
+    numbers.ok_or_else(|| "0 to 10000 cloths of 2 to 1024 particles a side, such as 100x32".into())
 }
 
 /// What is done with the meshes.
@@ -294,7 +294,7 @@ fn measure(scene: [u32; 2], away: bool, frames: u32) -> Vec<Record> {
 fn main() -> io::Result<()> {
     let args = Args::parse();
     let scenes = if args.scenes.is_empty() {
-        vec![[1, 256], [1, 128], [10, 64], [100, 32], [1000, 32]]
+        vec![[0, 2], [1, 256], [1, 128], [10, 64], [100, 32], [1000, 32]]
     } else {
         args.scenes
     };
