@@ -190,7 +190,7 @@ fn follow(
     mut cameras: Query<&mut OrbitCamera>,
 ) {
     /// [s].
-    const LATE: f32 = 0.35;
+    const LATE: f32 = 0.2;
     let place = things.iter().next().map(|at| at.translation.with_y(0.0));
     let part = 1.0 - (-time.delta_secs() / LATE).exp();
     for mut camera in &mut cameras {

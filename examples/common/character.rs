@@ -34,6 +34,11 @@ pub fn inertia() -> ClothInertia {
     }
 }
 
+/// How a cape is turned at rest: it lies in the air behind its wearer, not in the chest.
+pub fn behind() -> Quat {
+    Quat::from_rotation_x(1.2)
+}
+
 /// Holds the upper edge of a cape of this width [m] and so many columns around neck and shoulders, in pleats.
 pub fn collar(width: f32, columns: u32) -> ClothPins {
     // An arc from shoulder to shoulder, behind the neck; the pleats take up what is too long.
@@ -53,7 +58,10 @@ pub fn collar(width: f32, columns: u32) -> ClothPins {
             0.03 * angle.cos(),
             -HALF.y * angle.cos(),
         );
-        ClothPin::at(column, place * Vec3::new(out, 1.0, out))
+        ClothPin::at(
+            column,
+            behind().inverse() * (place * Vec3::new(out, 1.0, out)),
+        )
     });
     ClothPins {
         pins: pins.collect(),

@@ -78,9 +78,8 @@ impl SceneKind {
     /// The preset that it starts with.
     pub const fn preset(self) -> &'static str {
         match self {
-            Self::Curtain | Self::Tablecloth | Self::Cape | Self::Banner | Self::Garment => {
-                "cotton"
-            }
+            Self::Curtain | Self::Cape | Self::Banner | Self::Garment => "cotton",
+            Self::Tablecloth => "canvas",
             Self::Flag | Self::Fan => "silk",
             Self::Ball | Self::Crates => "denim",
         }
@@ -251,8 +250,7 @@ impl SceneKind {
             Self::Ball => Transform::from_xyz(0.0, 1.35, 0.0).with_rotation(flat),
             Self::Crates => Transform::from_xyz(0.0, 1.6, 0.0).with_rotation(flat),
             Self::Garment => Transform::IDENTITY,
-            // Within the chest, and in front of the mast.
-            Self::Cape => Transform::from_xyz(0.0, 0.21, 0.0),
+            Self::Cape => Transform::from_xyz(0.0, 0.21, 0.0).with_rotation(character::behind()),
             Self::Banner => Transform::from_xyz(0.0, 2.32, 0.07),
             Self::Fan => Transform::from_xyz(0.0, 1.9, 0.0),
         }

@@ -31,13 +31,13 @@ impl Shots {
         let (still, start, script) = match scene {
             SceneKind::Curtain => (2.96, 0.8, CURTAIN),
             SceneKind::Flag => (2.5, 1.0, FLAG),
-            SceneKind::Tablecloth => (2.76, 0.2, TABLECLOTH),
+            SceneKind::Tablecloth => (1.64, 0.2, TABLECLOTH),
             SceneKind::Ball => (2.0, 0.9, BALL),
             SceneKind::Cape => (4.76, 2.9, CAPE),
             SceneKind::Banner => (5.4, 3.6, BANNER),
             SceneKind::Garment => (3.0, 1.4, GARMENT),
             SceneKind::Crates => (1.2, 0.0, CRATES),
-            SceneKind::Fan => (3.2, 1.0, FAN),
+            SceneKind::Fan => (4.0, 1.8, FAN),
         };
         Ok(Self {
             still,
@@ -78,6 +78,7 @@ const FLAG: &str = "
 
 /// Falls; the ball rises, and goes away under it.
 const TABLECLOTH: &str = "
+0.0 zoom 0.7
 1.7 hold PageUp for 0.2
 2.3 hold Left for 0.3
 ";
