@@ -1,5 +1,7 @@
 //! Cloth and the bodies of [avian](avian3d) collide with each other, both ways.
 //!
+//! ![Crates and balls fall on a sheet that carries them](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/crates.gif)
+//!
 //! With [`ClothAvianPlugin`] each of avian's colliders keeps cloth out, without a mark on it, and cloth pushes, carries and
 //! stops dynamic bodies with the impulse that it loses itself.
 //!

@@ -1,4 +1,6 @@
 //! The rigid frame that a cloth's particles live in.
+//!
+//! ![A banner on a boat that pitches and rolls](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/banner.gif)
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};

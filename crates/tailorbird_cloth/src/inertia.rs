@@ -1,5 +1,7 @@
 //! How much of its entity's motion a cloth feels.
 //!
+//! ![A cape on somebody who runs and jumps](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/cape.gif)
+//!
 //! Pins move with the entity, and free particles keep their place in the world: that is physics, and the default. A cape on
 //! a character that sprints, snaps round and is moved by its game as no body moves looks better with less of it. What a cloth
 //! does not feel carries it along, as if it and its entity stood still:

@@ -1,5 +1,7 @@
 //! Fabrics: how cloth moves and looks, by one name.
 //!
+//! ![A curtain of red cotton](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/curtain.png)
+//!
 //! ```
 //! # use bevy_ecs::prelude::*;
 //! # use bevy_math::{UVec2, Vec2};

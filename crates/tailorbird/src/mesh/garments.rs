@@ -1,5 +1,7 @@
 //! A guide: from a mesh, or a glTF file, to a cloth.
 //!
+//! ![A skirt on a figure that hurries to and fro](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/garment.gif)
+//!
 //! # One mesh
 //!
 //! [`ClothFromMesh`] beside a `Mesh3d` is all. The material, the UVs and every other attribute are kept; vertices at one place,

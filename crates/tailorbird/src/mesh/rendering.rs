@@ -1,5 +1,7 @@
 //! A guide: how cloth is drawn, with every setting and what it costs.
 //!
+//! ![A flag of silk in the wind](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/flag.png)
+//!
 //! A cloth needs a material to be seen; all else is done: a mesh with positions, normals, UVs and tangents is built, put on its entity as
 //! `Mesh3d`, and follows the particles in each frame.
 //!

@@ -1,5 +1,7 @@
 //! Solid things that cloth collides with.
 //!
+//! ![A tablecloth falls over a ball](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/tablecloth.gif)
+//!
 //! ```
 //! # use bevy_ecs::prelude::*;
 //! # use bevy_math::{Isometry3d, Quat, Vec2, Vec3};

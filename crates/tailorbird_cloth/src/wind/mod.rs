@@ -1,6 +1,8 @@
 //! Moving air: one [`Wind`] in the whole world, and [`WindZone`]s that add to it. Each has gusts, which vary in time, and
 //! turbulence, which varies in space as well. Both depend on simulated time alone, so that they are the same at any frame rate.
 //!
+//! ![A curtain before a fan that turns to and fro](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/fan.gif)
+//!
 //! [`BlowingWind::velocity_at`] tells where the air goes, for what else is to move with it.
 //!
 //! Air that is the same everywhere in a cloth costs least. Turbulence is summed up for each particle once in a step (`bench -- kernels`:
