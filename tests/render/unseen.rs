@@ -83,5 +83,6 @@ fn cloth_sleeps_while_neither_it_nor_its_shadow_is_seen() {
     assert!(!is_unseen(&app, sleeps));
     let picture = app.picture();
     keep(&picture, "unseen");
-    assert_eq!(pixel(&picture, SIZE / 2)[..3], [255; 3]);
+    let [middle, corner] = [SIZE / 2, UVec2::ONE].map(|at| pixel(&picture, at)[0]);
+    assert!(middle > 150 && corner < 80, "{middle} {corner}");
 }

@@ -28,7 +28,7 @@
 //! | --- | --- | --- |
 //! | [`ClothMeshSettings::interpolate`](super::ClothMeshSettings::interpolate) | draws between the last two steps: no stutter, whatever the display's rate | nothing to speak of; what is drawn is up to a step old |
 //! | [`ClothMeshWrite::Slab`](super::ClothMeshWrite::Slab) | vertices go straight to where the renderer keeps them; the asset stays as it was built | a copy of the vertices |
-//! | [`ClothMeshWrite::Asset`](super::ClothMeshWrite::Asset) | vertices go to the `Mesh` asset, for those who read it | 4 to 5 times as much time at 65,000 vertices |
+//! | [`ClothMeshWrite::Asset`](super::ClothMeshWrite::Asset) | vertices go to the `Mesh` asset, for those who read it | 2 to 4 times as much time, by the machine |
 //! | [`ClothUnseen::Skip`](super::ClothUnseen::Skip) | what no camera and no light with shadows sees is not written | nothing |
 //! | [`ClothUnseen::Write`](super::ClothUnseen::Write) | it is | as if it were seen |
 //! | [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) | what no camera and no light with shadows sees is not simulated either | nothing; it saves both |
@@ -39,7 +39,8 @@
 //! | `NotShadowCaster` on the cloth | no shadow | saves drawing it once for each light |
 //!
 //! `cargo run --example frame_bench` measures frames with the mesh not written, written as an asset and written past it, and says which
-//! part of a frame each stage takes.
+//! part of a frame each stage takes. On two cores a sheet of 128² is simulated in 1.8 ms, and drawing it adds 0.3 to 0.6 ms, a seventh to a quarter
+//! of what it costs; an empty frame of Bevy takes 2.5 ms, and the software driver's part.
 //!
 //! # Light
 //!
