@@ -58,6 +58,18 @@ fn cloth_sleeps_while_neither_it_nor_its_shadow_is_seen() {
     app.update(10);
     assert_eq!(hash(&app), before);
 
+    // Its mesh is built anew though nobody sees it.
+    for n in [13, 5, 8] {
+        let mut cloth = app
+            .app
+            .world_mut()
+            .get_mut::<Cloth>(sleeps)
+            .expect("a cloth");
+        *cloth = Cloth::grid(Vec2::ONE, UVec2::splat(n)).centered();
+        app.update(3);
+    }
+    assert!(is_unseen(&app, sleeps));
+
     // A light whose shadows it is in sees it, where a camera sees the light's shadows.
     let light = app
         .app

@@ -14,7 +14,8 @@ use crate::{
 };
 
 /// The box, in the cloth's frame, around all particles after the last two steps, and so around everything interpolated
-/// between. Written by [`update_bounds`] alone.
+/// between. Written by [`update_bounds`], and where nobody sees the
+/// cloth by [`carry_unseen`](crate::sleep::carry_unseen).
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothBounds {

@@ -144,6 +144,14 @@ impl ClothFrame {
         }
     }
 
+    /// The same for what holds the cloth: a cloth that its entity carries was put elsewhere with it, whatever its holder did.
+    pub(crate) fn start_for(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
+        match self.jump {
+            Some(jump) if self.carries => jump * start,
+            _ => self.start_of(start, end),
+        }
+    }
+
     /// The way during a substep, in the frame as it is, of something that goes through the world from `start` to `end` in this
     /// step. It begins as far from the particles as it then was.
     pub(crate) fn way_to_frame(

@@ -1,7 +1,7 @@
 //! Normals for shading.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 
@@ -9,7 +9,7 @@ use crate::{
     cloth::Cloth,
     crew::Crew,
     points::Points,
-    solver::kernels::{lanes::SharedPoints, normals},
+    solver::kernels::{lanes::SharedPoints, normals, rigid},
     stages::{ClothStages, ClothStagesItem, for_each_cloth},
     step::ClothStep,
     topology::Topology,
@@ -86,20 +86,36 @@ impl ClothNormals {
 /// Computes the normals of all cloths.
 pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     for_each_cloth(&step, &mut cloths, &|mut cloth| {
-        // One that sleeps may be shaded in another way, or be rebuilt while time stands still.
-        if !cloth.rest.is_asleep() || cloth.normals.are_stale(cloth.topology, *cloth.shading) {
+        if cloth.rest.is_asleep() {
+            cloth.renew(step.level());
+        } else {
             cloth.recompute_normals(step.level(), Crew::ALONE);
         }
     });
 }
 
 impl ClothNormals {
+    /// Turns all of them.
+    pub(crate) fn turn(&mut self, by: Quat) {
+        let by = Mat3::from_quat(by);
+        rigid::rotate(by, &mut self.current);
+        rigid::rotate(by, &mut self.previous);
+    }
+
     fn are_stale(&self, topology: &Topology, shading: ClothShading) -> bool {
         self.revision != topology.revision || self.shading != shading
     }
 }
 
 impl ClothStagesItem<'_, '_> {
+    /// Computes the normals and the box of one that sleeps where it was rebuilt, or is shaded in another way.
+    pub(crate) fn renew(&mut self, level: Level) {
+        if self.normals.are_stale(self.topology, *self.shading) {
+            self.recompute_normals(level, Crew::ALONE);
+            self.update_bounds(level);
+        }
+    }
+
     /// What [`recompute_normals`] does for one cloth.
     pub(crate) fn recompute_normals(&mut self, level: Level, crew: Crew) {
         let (topology, shading) = (self.topology, *self.shading);

@@ -101,18 +101,13 @@ impl Plugin for ClothPlugin {
             Prepare,
             (
                 start_clock,
-                rest_unseen,
                 begin_step,
+                rest_unseen,
                 prepare_frames,
                 build_topology,
                 apply_pins,
                 reset_teleported,
-                (
-                    prepare_attachments,
-                    prepare_motion,
-                    carry_unseen.run_if(step_runs),
-                )
-                    .chain(),
+                (prepare_attachments, prepare_motion, carry_unseen).chain(),
                 build_tethers,
                 plan_substeps,
                 (snapshot_colliders, prepare_wind).chain().run_if(step_runs),

@@ -109,7 +109,8 @@ fn meet(ray: Ray3d, [a, b, c]: [Vec3; 3]) -> Option<(Vec3, f32)> {
     let w = direction.dot(q) / determinant;
     let distance = ac.dot(q) / determinant;
     let weights = Vec3::new(1.0 - v - w, v, w);
-    if weights.min_element() < -EDGE || distance < 0.0 {
+    // Nor is what is not a number at any place.
+    if !(weights.cmpge(Vec3::splat(-EDGE)).all() && distance >= 0.0) {
         return None;
     }
     let inside = weights.max(Vec3::ZERO);
@@ -158,6 +159,8 @@ mod tests {
                 }
             }
         }
+        let nowhere = Ray3d::new(Vec3::NAN, Dir3::NEG_Z);
+        assert_eq!(particles.cast_ray(&topology, &bounds, nowhere), None);
     }
 
     #[test]

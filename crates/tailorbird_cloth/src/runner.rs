@@ -83,8 +83,12 @@ pub(crate) fn simulate_cloths(
     };
     let is_large = |cloth: &ClothStagesItem| cloth.particles.len() >= LARGE;
     let mut large = 0;
-    for cloth in &mut cloths {
-        large += usize::from(is_large(&cloth) && !cloth.rest.is_asleep());
+    for mut cloth in &mut cloths {
+        if cloth.rest.is_asleep() {
+            cloth.renew(step.level());
+        } else if is_large(&cloth) {
+            large += 1;
+        }
     }
     for_each_awake(&step, &mut cloths, &|mut cloth| {
         if !is_large(&cloth) {

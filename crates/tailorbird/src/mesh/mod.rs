@@ -41,7 +41,8 @@ pub enum ClothUnseen {
     /// They are not written until they are seen again, and then in that frame. Meshes that are written as assets are written all the same.
     #[default]
     Skip,
-    /// They are written, for those who draw what Bevy does not see: by ray tracing, say.
+    /// They are written, for those who draw what Bevy does not see: by ray tracing, say. It is for them to set
+    /// [`ClothSeen`](tailorbird_cloth::sleep::ClothSeen) then, where cloths are to sleep.
     Write,
 }
 

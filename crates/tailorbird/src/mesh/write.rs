@@ -68,18 +68,22 @@ pub(super) fn bound_cloth_meshes(
     }
 }
 
-/// Notes which cloths somebody sees; all of them where nothing is drawn.
+/// Notes which cloths somebody sees, where the renderer draws what is seen alone.
 pub(super) fn note_seen(
+    settings: Res<ClothMeshSettings>,
     uploads: Option<Res<VertexUploads>>,
     mut cloths: Query<(&ClothMesh, &mut ClothSeen)>,
     visible: Query<&ViewVisibility>,
 ) {
+    if uploads.is_none() || settings.unseen == ClothUnseen::Write {
+        return;
+    }
     for (cloth_mesh, mut seen) in &mut cloths {
         let is_seen = |part: &ClothMeshPart| {
             !part.in_asset || visible.get(part.entity).is_ok_and(|v| v.get())
         };
         let parts = &cloth_mesh.parts;
-        let any = uploads.is_none() || parts.is_empty() || parts.iter().any(is_seen);
+        let any = parts.is_empty() || parts.iter().any(is_seen);
         seen.set_if_neq(ClothSeen(any));
     }
 }
@@ -129,8 +133,9 @@ pub(super) fn follow_cloth(
     let mut jobs = Vec::new();
     let mut all: Vec<_> = cloths.iter_mut().collect();
     for (cloth_mesh, rest, particles, normals, topology, frame, held) in &mut all {
-        // One that sleeps stays where it fell asleep.
+        // One that sleeps stays where it fell asleep, unless it is carried along.
         let (steps, fraction) = match rest.asleep_since() {
+            _ if rest.is_unseen() => (step.steps(), 1.0),
             Some(step) => (step, 1.0),
             None => (step.steps(), fraction),
         };
@@ -143,7 +148,11 @@ pub(super) fn follow_cloth(
         let is_seen = |part: &ClothMeshPart| !skips || seen.get(part.entity).is_ok_and(|v| v.get());
         let (attached, place, holds) = held;
         let holds = holds.bypass_change_detection();
-        if !rest.is_asleep() {
+        let writes = cloth_mesh
+            .parts
+            .iter()
+            .any(|part| !part.in_asset || is_seen(part));
+        if !rest.is_asleep() || rest.is_unseen() && writes {
             let now = |target| places.get(target).ok().copied();
             holds.update(topology, particles, attached, place, fraction, now);
         }

@@ -1,7 +1,7 @@
 //! What the attachments of a cloth hold during a step.
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Vec3};
+use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 
@@ -297,19 +297,25 @@ impl AttachedParticles {
         let held_elsewhere = !particles.pins.is_empty() || !particles.limited.is_empty();
         let body = self.bodies.first().filter(|_| !held_elsewhere)?;
         let was = body.jumped.unwrap_or(body.start);
-        if was == body.end {
-            return None;
-        }
         // With its entity it may have been put elsewhere already.
-        let was = was.at(frame.start_of(was.place(), body.end.place()));
+        let was = was.at(frame.start_for(was.place(), body.end.place()));
+        if was == body.end {
+            return Some(Isometry3d::IDENTITY);
+        }
         Some(motion(&was, &body.end, frame.isometry()))
     }
 
-    /// Moves the cloth and its motion along with what holds it; whether that moves.
-    pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> bool {
-        let Some(motion) = self.motion_of_all(frame, particles) else {
-            return false;
-        };
+    /// Whether something that holds the cloth was put elsewhere in this step.
+    pub(crate) fn has_jumped(&self) -> bool {
+        self.bodies.iter().any(|body| body.jumped.is_some())
+    }
+
+    /// Moves the cloth and its motion along with what holds it. Returns how it turned, where it moved.
+    pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> Option<Quat> {
+        let motion = self.motion_of_all(frame, particles)?;
+        if motion == Isometry3d::IDENTITY {
+            return None;
+        }
         for i in 0..particles.len() {
             let ClothParticles {
                 position,
@@ -321,7 +327,7 @@ impl AttachedParticles {
             previous_position.set(i, motion * previous_position.get(i));
             lost_displacement.set(i, motion.rotation * lost_displacement.get(i));
         }
-        true
+        Some(motion.rotation)
     }
 
     /// Takes the springs into account before the constraints are solved: see [`spring`].

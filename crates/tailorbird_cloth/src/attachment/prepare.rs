@@ -154,7 +154,7 @@ pub fn prepare_attachments(
             };
             let start = state.pose.unwrap_or(end);
             let far = ClothCollider::TELEPORT_SPEED * step.world_seconds();
-            let jumped = step.running() && (start.distance(&end) > far || rest.is_unseen());
+            let jumped = rest.is_unseen() || step.running() && start.distance(&end) > far;
             let body = Body {
                 attachment,
                 target,
@@ -171,7 +171,7 @@ pub fn prepare_attachments(
         attached.disturbed |= changed || attached.bodies.iter().any(|body| body.jumped.is_some());
         attached.revision += u64::from(changed);
         // One that sleeps remembers where things were when it fell asleep, however slowly they creep away.
-        if step.running() && (attached.disturbed || !rest.is_asleep()) {
+        if rest.is_unseen() || step.running() && (attached.disturbed || !rest.is_asleep()) {
             for body in &attached.bodies {
                 if let Ok((.., mut state, _)) = attachments.get_mut(body.attachment) {
                     state.pose = Some(body.end);

@@ -48,7 +48,7 @@ use unseen::Unseen;
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothSleep {
-    /// Whether the cloth falls asleep at all.
+    /// Whether the cloth falls asleep when it is at rest.
     pub enabled: bool,
     /// What is slower rests [m/s]; with 0, nothing settles either.
     pub speed: f32,
@@ -75,7 +75,7 @@ impl Default for ClothSleep {
 }
 
 impl ClothSleep {
-    /// A cloth that is always awake. It settles all the same.
+    /// A cloth that is always awake, seen or not. It settles all the same.
     pub fn never() -> Self {
         Self {
             enabled: false,
@@ -103,7 +103,8 @@ impl ClothSleep {
     }
 }
 
-/// Whether a cloth is at rest or asleep. Written by [`rest_unseen`], [`wake_cloths`] and [`rest_cloths`] alone.
+/// Whether a cloth is at rest or asleep. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and
+/// [`rest_cloths`] alone, and by [`ClothRest::wake`].
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothRest {
@@ -140,20 +141,24 @@ impl ClothRest {
 
     /// Whether the cloth sleeps because nobody sees it.
     pub fn is_unseen(&self) -> bool {
-        matches!(self.unseen, Unseen::Since(_))
+        matches!(self.unseen, Unseen::Since(_) | Unseen::Touched(_))
     }
 
     /// The step after which the cloth fell asleep, where it sleeps.
     pub fn asleep_since(&self) -> Option<u64> {
         match self.unseen {
-            Unseen::Since(step) => Some(step),
+            Unseen::Since(step) | Unseen::Touched(step) => Some(step),
             _ => self.asleep,
         }
     }
 
-    /// Wakes the cloth, and makes it wait again before it falls asleep. One that nobody sees sleeps on.
+    /// Wakes the cloth, and makes it wait again before it falls asleep. One that nobody sees takes one step and
+    /// sleeps on.
     pub fn wake(&mut self) {
-        *self = self.awake();
+        *self = Self {
+            unseen: self.unseen.touched(),
+            ..Self::default()
+        };
     }
 
     fn awake(&self) -> Self {

@@ -7,12 +7,13 @@ use bevy_reflect::prelude::*;
 use super::{ClothRest, ClothSleep};
 use crate::{
     attachment::AttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
-    motion::ClothMotionTargets, particles::ClothParticles, step::ClothStep,
+    motion::ClothMotionTargets, normals::ClothNormals, particles::ClothParticles, step::ClothStep,
 };
 
 /// Whether somebody sees the cloth: its picture, or its shadow.
 ///
-/// Whoever draws cloth says so, here; without that, all cloths are seen. It matters where [`ClothSleep::unseen`] is set.
+/// Whoever draws cloth says so, here: `tailorbird` does where Bevy draws it; without that, all cloths are seen. It matters where
+/// [`ClothSleep::unseen`] is set.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothSeen(pub bool);
@@ -31,8 +32,20 @@ pub(super) enum Unseen {
     No,
     /// After this step it was seen no more.
     Since(u64),
-    /// It is seen again from this step on.
+    /// The same, and it is to take one step all the same.
+    Touched(u64),
+    /// It is seen again in this step, or takes one.
     Back,
+}
+
+impl Unseen {
+    /// What becomes of it where something happened to the cloth.
+    pub fn touched(self) -> Self {
+        match self {
+            Self::Since(step) => Self::Touched(step),
+            same => same,
+        }
+    }
 }
 
 /// Lets cloths sleep that nobody sees, and wakes those that somebody sees again.
@@ -52,11 +65,12 @@ pub fn rest_unseen(
     for (sleep, seen, mut rest, mut frame, has_targets) in &mut cloths {
         let sleeps = sleep.unseen && !seen.0 && !has_targets;
         let unseen = match rest.unseen {
-            Unseen::No if sleeps => Unseen::Since(step.steps()),
-            Unseen::Back if sleeps => Unseen::Since(step.steps()),
-            Unseen::Since(_) if !sleeps => Unseen::Back,
-            // The step that is over was the first one.
-            Unseen::Back if step.running() => Unseen::No,
+            Unseen::No | Unseen::Back if sleeps => {
+                Unseen::Since(step.steps() - u64::from(step.running()))
+            }
+            Unseen::Back => Unseen::No,
+            Unseen::Touched(_) if step.running() => Unseen::Back,
+            Unseen::Since(_) if step.running() && !sleeps => Unseen::Back,
             same => same,
         };
         if unseen != rest.unseen {
@@ -64,12 +78,12 @@ pub fn rest_unseen(
                 unseen,
                 ..ClothRest::default()
             };
-            frame.bypass_change_detection().carries = matches!(unseen, Unseen::Since(_));
+            frame.bypass_change_detection().carries = rest.is_unseen();
         }
     }
 }
 
-/// Carries cloths that nobody sees along with what holds them, and those that are seen again on at its velocity.
+/// Carries cloths that nobody sees along with what holds them, also during a pause, and those that are seen again on at its velocity.
 pub fn carry_unseen(
     step: Res<ClothStep>,
     mut cloths: Query<
@@ -78,24 +92,30 @@ pub fn carry_unseen(
             &ClothFrame,
             &AttachedParticles,
             &mut ClothParticles,
+            &mut ClothNormals,
             &mut ClothBounds,
         ),
         With<Cloth>,
     >,
 ) {
-    for (rest, frame, attached, mut particles, mut bounds) in &mut cloths {
+    for (rest, frame, attached, mut particles, mut normals, mut bounds) in &mut cloths {
         match rest.unseen {
             Unseen::No => {}
-            Unseen::Since(_) => {
-                if attached.carry(frame, &mut particles) {
+            Unseen::Since(_) | Unseen::Touched(_) => {
+                if let Some(turn) = attached.carry(frame, &mut particles) {
+                    normals.turn(turn);
                     particles.begin_step();
                     let around = ClothBounds::around(step.level(), &particles);
                     bounds.set_if_neq(around.unwrap_or_default());
                 }
             }
             Unseen::Back => {
+                particles.begin_step();
                 let by_others = attached.motion_of_all(frame, &particles);
                 let motion = by_others.unwrap_or_else(|| frame.felt_motion());
+                // What was put elsewhere in this step has no velocity.
+                let rests = attached.has_jumped() || step.seconds() <= 0.0;
+                let motion = if rests { Isometry3d::IDENTITY } else { motion };
                 particles.go_along(motion, step.seconds());
             }
         }
@@ -105,7 +125,14 @@ pub fn carry_unseen(
 impl ClothParticles {
     /// Gives the free particles the velocity of a rigid motion that takes so long \[s\].
     fn go_along(&mut self, motion: Isometry3d, seconds: f32) {
-        let part = self.substep_seconds / seconds;
+        if self.substep_seconds <= 0.0 {
+            self.substep_seconds = seconds;
+        }
+        let part = if seconds > 0.0 {
+            self.substep_seconds / seconds
+        } else {
+            0.0
+        };
         let Self {
             position,
             previous_position,

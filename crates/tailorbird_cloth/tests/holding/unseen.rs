@@ -138,7 +138,6 @@ fn it_stays_awake_without_the_setting_and_with_targets_and_wakes_by_nothing_else
     world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = true);
     world.steps(1);
     assert!(world.get::<ClothRest>(cloth).is_asleep());
-    world.edit::<ClothRest>(cloth, ClothRest::wake);
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 1.0);
     world.edit::<ClothForces>(cloth, |forces| forces.add_force(100, Vec3::X));
     let shape_before = shape(&world, cloth);
@@ -162,18 +161,75 @@ fn it_comes_back_during_a_pause() {
         world.steps(240);
         see(&mut world, cloth, false);
         world.steps(60);
+        let before = shape(&world, cloth);
         world.settings(|s| s.paused = true);
+        // The runner runs on.
         world.steps(3);
         see(&mut world, cloth, true);
         world.steps(3);
-        assert!(world.positions(cloth).iter().all(|p| p.is_finite()));
+        assert!(furthest(&before, &shape(&world, cloth)) < 1e-3, "{held:?}");
         world.settings(|s| s.paused = false);
         let mut stretch = 0.0f32;
-        for _ in 0..30 {
+        for step in 0..30 {
             world.steps(1);
+            let fastest = world.fastest(cloth);
+            assert!(fastest < 2.0 * RUN, "{held:?}, step {step}: {fastest}");
             stretch = stretch.max(world.stretch(cloth).max);
         }
         assert!(stretch < 0.1, "{held:?}: {stretch}");
+        for i in 0..144 {
+            let speed = world.velocity(cloth, i).length();
+            assert!((speed - RUN).abs() < 1.5, "{held:?}: {speed}");
+        }
         assert!(!world.get::<ClothRest>(cloth).is_asleep());
     }
+}
+
+/// Its entity walks away from it, its holder does not.
+#[test]
+fn it_stays_with_a_holder_that_stands_while_its_entity_moves() {
+    let mut world = World::new();
+    let walker = world.spawn((Transform::default(), runner()));
+    let hand = world.spawn(Transform::default());
+    let cloth = world.spawn((square(12), ChildOf(walker)));
+    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
+    world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = true);
+    world.steps(240);
+    let before = world.positions(cloth);
+    see(&mut world, cloth, false);
+    world.steps(240);
+    assert!(furthest(&before, &world.positions(cloth)) < 2e-3);
+    see(&mut world, cloth, true);
+    world.steps(1);
+    assert!(world.fastest(cloth) < 0.5, "{}", world.fastest(cloth));
+}
+
+#[test]
+fn it_is_whole_when_it_is_rebuilt_and_takes_one_step_when_it_is_woken() {
+    let (mut world, cloth) = cape(Held::Attached, true);
+    world.steps(60);
+    see(&mut world, cloth, false);
+    world.steps(5);
+    for (n, scale) in [(20, 1.0), (6, 3.0), (30, 0.5)] {
+        world.edit::<Cloth>(cloth, |cloth| {
+            *cloth = Cloth::grid(bevy_math::Vec2::ONE, bevy_math::UVec2::splat(n)).centered();
+        });
+        world.edit::<Transform>(cloth, |at| at.scale = Vec3::splat(scale));
+        world.steps(1);
+        assert!(world.get::<ClothRest>(cloth).is_unseen());
+        let count = (n * n) as usize;
+        assert_eq!(world.particles(cloth).len(), count);
+        assert_eq!(world.get::<ClothNormals>(cloth).len(), count);
+        let bounds: &ClothBounds = world.get(cloth);
+        let size = (bounds.max - bounds.min).max_element();
+        assert!((0.8 * scale..2.0 * scale).contains(&size), "{size}");
+    }
+    let hash = world.hash(cloth);
+    world.edit::<ClothRest>(cloth, ClothRest::wake);
+    world.steps(1);
+    let after = world.hash(cloth);
+    assert_ne!(after, hash);
+    world.steps(1);
+    assert!(world.get::<ClothRest>(cloth).is_unseen());
 }
