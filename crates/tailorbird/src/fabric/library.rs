@@ -20,11 +20,18 @@ use super::{
 };
 
 /// The textures of a fabric: what their files are called, and what is in them.
-const KINDS: [(&str, Texels); 3] = [
-    ("albedo", Texels::Color),
-    ("normal", Texels::Normal),
-    ("metallic_roughness", Texels::Value),
-];
+fn kinds(fabric: Fabric) -> [(&'static str, Texels); 3] {
+    let albedo = if fabric.has_holes() {
+        Texels::Cutout
+    } else {
+        Texels::Color
+    };
+    [
+        ("albedo", albedo),
+        ("normal", Texels::Normal),
+        ("metallic_roughness", Texels::Value),
+    ]
+}
 
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
@@ -37,7 +44,7 @@ pub struct FabricLibrary {
 /// Fabric, dye, tiles along u and v, and whether it has textures.
 type Key = (Fabric, [u32; 4], [u32; 2], bool);
 
-/// The textures of a fabric, in the order of [`KINDS`].
+/// The textures of a fabric, in the order of [`kinds`].
 #[derive(Debug)]
 enum Textures {
     Loading([Handle<Image>; 3]),
@@ -96,12 +103,11 @@ pub(super) fn dress_cloths(
             if textured {
                 let folder = &library.folder;
                 let textures = library.textures.entry(fabric).or_insert_with(|| {
-                    Textures::Loading(KINDS.map(|(kind, texels)| {
+                    Textures::Loading(kinds(fabric).map(|(kind, texels)| {
                         let path = format!("{folder}/{}_{kind}.png", fabric.name());
                         let settings = move |settings: &mut ImageLoaderSettings| {
-                            settings.is_srgb = texels == Texels::Color;
-                            settings.sampler =
-                                repeating(fabric.has_holes() && texels == Texels::Color);
+                            settings.is_srgb = matches!(texels, Texels::Color | Texels::Cutout);
+                            settings.sampler = repeating(texels == Texels::Cutout);
                         };
                         server.load_builder().with_settings(settings).load(path)
                     }))
@@ -144,8 +150,9 @@ pub(super) fn load_textures(
                 let [Some(a), Some(b), Some(c)] = loaded else {
                     continue;
                 };
+                let kinds = kinds(*fabric);
                 let task = async move {
-                    let mut full = [a, b, c].into_iter().zip(KINDS);
+                    let mut full = [a, b, c].into_iter().zip(kinds);
                     array::from_fn(|_| {
                         let next = full.next();
                         next.map_or_else(Image::default, |(image, (_, texels))| {

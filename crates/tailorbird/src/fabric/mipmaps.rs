@@ -7,8 +7,11 @@ use bevy_render::render_resource::TextureFormat;
 /// What the numbers of a texture are, and so what their mean is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texels {
-    /// Colours in sRGB: the mean is that of the light. Where some of it is open, as many texels of the smaller copies are.
+    /// Colours in sRGB: the mean is that of the light.
     Color,
+    /// Colours with holes, for an alpha test: as many texels of a smaller copy are holes as the mean says, the others are none. A sampler
+    /// that takes means of copies (`mipmap_filter`, `anisotropy_clamp`) would undo it.
+    Cutout,
     /// Directions: the mean has unit length.
     Normal,
     /// Plain numbers.
@@ -33,7 +36,7 @@ pub fn with_mipmaps(mut full: Image, texels: Texels) -> Image {
     let linear: [f32; 256] = std::array::from_fn(|v| (v as f32 / 255.0).powf(2.2));
     let mut start = 0;
     let mut levels = 1;
-    let has_holes = texels == Texels::Color && data.chunks_exact(4).any(|texel| texel[3] < 255);
+    let has_holes = texels == Texels::Cutout;
     // What is written are zeros and ones, what is averaged further are their means.
     let mut cover: Vec<f32> = if has_holes {
         data.chunks_exact(4)
@@ -116,7 +119,7 @@ fn mean(four: [[u8; 4]; 4], texels: Texels, linear: &[f32; 256]) -> [u8; 4] {
     let plain = |i: usize| four.iter().map(|texel| f32::from(texel[i])).sum::<f32>() / 1020.0;
     let [r, g, b] = match texels {
         // An exponent of 2.2 is near enough to sRGB's curve for a mean.
-        Texels::Color => [0, 1, 2].map(|i| {
+        Texels::Color | Texels::Cutout => [0, 1, 2].map(|i| {
             let sum: f32 = four.iter().map(|texel| linear[usize::from(texel[i])]).sum();
             (0.25 * sum).powf(1.0 / 2.2)
         }),
@@ -193,7 +196,7 @@ mod tests {
             TextureFormat::Rgba8UnormSrgb,
             RenderAssetUsages::RENDER_WORLD,
         );
-        let data = with_mipmaps(full, Texels::Color).data.unwrap_or_default();
+        let data = with_mipmaps(full, Texels::Cutout).data.unwrap_or_default();
         let (mut start, mut side) = (0, SIDE as usize);
         // 1 - 6/8 · 7/8 of the net is closed.
         let expected = [0.34375, 0.34375, 1.0, 0.0];
