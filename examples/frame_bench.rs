@@ -107,8 +107,8 @@ struct Record {
     outside_solver: f64,
     /// What the meshes add to a frame in which they are not written [ms].
     added: f64,
-    /// Which part that is of it and the simulation: of what the cloth costs, an empty frame of Bevy left out.
-    outside_solver_of_cloth: f64,
+    /// Which part that is of it and the simulation: of what the cloth costs, an empty frame of Bevy left out. None without cloth.
+    outside_solver_of_cloth: Option<f64>,
 }
 
 /// Time in the frame's systems.
@@ -291,7 +291,7 @@ fn measure(scene: [u32; 2], away: bool, frames: u32) -> Vec<Record> {
             total,
             outside_solver: part(|frame| 1.0 - frame.simulate / frame.total()),
             added: 0.0,
-            outside_solver_of_cloth: 0.0,
+            outside_solver_of_cloth: None,
         }
     });
     let mut records: Vec<Record> = records.collect();
@@ -299,7 +299,8 @@ fn measure(scene: [u32; 2], away: bool, frames: u32) -> Vec<Record> {
     for record in &mut records {
         record.added = record.total - still;
         let cloth = record.frame.simulate + record.added;
-        record.outside_solver_of_cloth = record.added / cloth;
+        record.outside_solver_of_cloth =
+            (record.cloths > 0 && cloth > 0.0).then_some(record.added / cloth);
     }
     records
 }
@@ -328,14 +329,16 @@ fn main() -> io::Result<()> {
             let [simulate, write, other, extract, render] = record.frame.parts();
             writeln!(
                 out,
-                "{:>6} {:>4}²  {:<8} {simulate:>9.3} {write:>7.3} {other:>7.3} {extract:>8.3} {render:>7.3} {:>7.3} {:>7.0} % {:>7.3} {:>7.0} %",
+                "{:>6} {:>4}²  {:<8} {simulate:>9.3} {write:>7.3} {other:>7.3} {extract:>8.3} {render:>7.3} {:>7.3} {:>7.0} % {:>7.3} {:>9}",
                 record.cloths,
                 record.size,
                 format!("{:?}", record.writes).to_lowercase(),
                 record.total,
                 100.0 * record.outside_solver,
                 record.added,
-                100.0 * record.outside_solver_of_cloth,
+                record
+                    .outside_solver_of_cloth
+                    .map_or_else(String::new, |part| format!("{:.0} %", 100.0 * part)),
             )?;
         }
         all.extend(records);

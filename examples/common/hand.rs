@@ -101,7 +101,8 @@ fn move_hand(
     if way != Vec2::ZERO || keys.just_pressed(KeyCode::KeyG) {
         let at = now.at.unwrap_or(0.5 * size);
         let way = way * SPEED * size.y * time.delta_secs();
-        now.at = Some((at + way).clamp(Vec2::ZERO, size));
+        // At the very edge it would be outside.
+        now.at = Some((at + way).clamp(Vec2::ONE, (size - 1.0).max(Vec2::ONE)));
     }
     if keys.just_pressed(KeyCode::KeyG) {
         let opens = now.closed || now.closes_in > 0;
