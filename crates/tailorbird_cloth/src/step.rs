@@ -145,7 +145,12 @@ impl ClothStep {
     ) -> u32 {
         let automatic = || {
             let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
-            (unloaded as f32 * self.loaded(particles)).ceil() as u32
+            let loaded = (unloaded as f32 * self.loaded(particles)).ceil() as u32;
+            if particles.grabbed.is_some() {
+                loaded.max(solver.substeps_in_hand(topology))
+            } else {
+                loaded
+            }
         };
         self.fixed_substeps.unwrap_or_else(automatic).max(1)
     }

@@ -36,7 +36,8 @@ impl ClothSolver {
     ///
     /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
     /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 12th of
-    /// the square root of its particles, 8 to 16. [`GaussSeidel`](Self::GaussSeidel): 16.
+    /// the square root of its particles, 8 to 16. Both take up to 32, a fifth of the longer side, while a hand holds the cloth.
+    /// [`GaussSeidel`](Self::GaussSeidel): 16.
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
             Self::Chains => {
@@ -53,6 +54,17 @@ impl ClothSolver {
             }
             Self::GaussSeidel => 16,
         }
+    }
+
+    /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
+    /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
+    pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
+        let side = match (self, topology.lattice) {
+            (Self::GaussSeidel, _) => 0,
+            (Self::Chains, Some(lattice)) => lattice.columns.max(lattice.rows),
+            (Self::Chains, None) => (topology.particles() as f32).sqrt().ceil() as u32,
+        };
+        side.div_ceil(5).next_multiple_of(2).min(32)
     }
 }
 

@@ -9,6 +9,7 @@ mod bad_input;
 mod bits;
 mod breaking;
 mod drawn;
+mod hand;
 mod motion;
 mod regressions;
 mod sleeping;
