@@ -154,7 +154,7 @@ fn b_blurs_what_is_not_in_focus() {
     let camera = one::<With<OrbitCamera>>(&mut app);
     tap(&mut app, KeyCode::KeyB);
     frames(&mut app, 2);
-    let lens = get::<DepthOfField>(&app, camera).clone();
+    let lens = *get::<DepthOfField>(&app, camera);
     assert_eq!(lens.focal_distance, view(&mut app).distance);
     assert_eq!(lens.aperture_f_stops, settings(&app).look.f_number);
     key(&mut app, KeyCode::Minus, ButtonState::Pressed);
