@@ -24,6 +24,7 @@ pub mod photo;
 pub mod plot;
 pub mod props;
 pub mod saved;
+pub mod scene_assets;
 pub mod scene_list;
 pub mod scenes;
 pub mod script;

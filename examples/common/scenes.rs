@@ -2,9 +2,10 @@
 
 use std::{f32::consts::FRAC_PI_2, fmt, str::FromStr};
 
-use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy::prelude::*;
 use tailorbird::prelude::*;
 
+pub use super::scene_assets::{MaterialOf, SceneAssets};
 use super::{camera::OrbitCamera, character, crates, fan, garment, props, settings::DemoSettings};
 
 /// Everything that a scene spawns, so that it can be cleared away.
@@ -294,41 +295,6 @@ fn corners(which: &[GridCorner], at: Vec3) -> ClothPins {
     }
 }
 
-/// What is needed to show a scene.
-#[derive(SystemParam)]
-pub struct SceneAssets<'w> {
-    meshes: ResMut<'w, Assets<Mesh>>,
-    materials: ResMut<'w, Assets<StandardMaterial>>,
-    server: Res<'w, AssetServer>,
-}
-
-impl SceneAssets<'_> {
-    /// A ball of this radius [m].
-    pub fn sphere(&mut self, radius: f32) -> Mesh3d {
-        Mesh3d(self.meshes.add(Sphere::new(radius).mesh().uv(64, 32)))
-    }
-
-    /// A scene from a glTF file in the folder of assets.
-    pub fn gltf(&self, path: &'static str) -> WorldAssetRoot {
-        WorldAssetRoot(self.server.load(GltfAssetLabel::Scene(0).from_asset(path)))
-    }
-
-    /// A mesh of this shape.
-    pub fn mesh(&mut self, shape: impl Into<Mesh>) -> Mesh3d {
-        Mesh3d(self.meshes.add(shape))
-    }
-
-    /// A plain material.
-    pub fn painted(&mut self, color: Color, roughness: f32, metallic: f32) -> MaterialOf {
-        MeshMaterial3d(self.materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness: roughness,
-            metallic,
-            ..default()
-        }))
-    }
-}
-
 /// How the scene's cloth looks. What has a colour of its own is not dyed.
 pub fn look(settings: &DemoSettings) -> ClothLook {
     let fabric = Fabric::by_name(settings.preset).unwrap_or_default();
@@ -342,9 +308,6 @@ pub fn look(settings: &DemoSettings) -> ClothLook {
         ..ClothLook::new(fabric).with_dye(dye)
     }
 }
-
-/// Of something that is drawn.
-pub type MaterialOf = MeshMaterial3d<StandardMaterial>;
 
 /// Spawns a scene.
 pub fn spawn_scene(commands: &mut Commands, settings: &DemoSettings, assets: &mut SceneAssets) {

@@ -5,7 +5,7 @@ use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 
-use super::pose::{Map, Pose};
+use super::pose::{Map, Pose, motion};
 use crate::{
     frame::ClothFrame,
     memory::heap,
@@ -385,18 +385,4 @@ impl AttachedParticles {
         }
         all
     }
-}
-
-/// The rigid motion from one pose to another, as seen from a frame that does not move.
-fn motion(from: &Pose, to: &Pose, frame: Isometry3d) -> Isometry3d {
-    let unturned = frame.rotation.inverse();
-    // As small numbers: both ends relative to the frame.
-    let [from, to] = [from, to].map(|pose| {
-        let at = pose.place();
-        Isometry3d::new(
-            unturned * Vec3::from(at.translation - frame.translation),
-            unturned * at.rotation,
-        )
-    });
-    to * from.inverse()
 }

@@ -83,6 +83,20 @@ impl Pose {
     }
 }
 
+/// The rigid motion from one pose to another, as seen from a frame that does not move.
+pub(super) fn motion(from: &Pose, to: &Pose, frame: Isometry3d) -> Isometry3d {
+    let unturned = frame.rotation.inverse();
+    // As small numbers: both ends relative to the frame.
+    let [from, to] = [from, to].map(|pose| {
+        let at = pose.place();
+        Isometry3d::new(
+            unturned * Vec3::from(at.translation - frame.translation),
+            unturned * at.rotation,
+        )
+    });
+    to * from.inverse()
+}
+
 #[cfg(test)]
 mod tests {
     use bevy_math::Quat;
