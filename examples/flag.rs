@@ -25,6 +25,7 @@ fn main() -> ExitCode {
         .add_plugins((
             DefaultPlugins,
             ClothPlugins::default(),
+            (ClothDragPlugin, SphereControlsPlugin),
             StagePlugin::default(),
             ExitAfterFrames,
         ))

@@ -7,8 +7,10 @@ use std::{
     fs,
     io::{self, Write},
     path::PathBuf,
-    time::{Duration, Instant},
+    time::Duration,
 };
+
+use bevy::platform::time::Instant;
 
 use bevy::{
     app::{AppLabel, PluginsState, TerminalCtrlCHandlerPlugin},

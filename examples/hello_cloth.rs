@@ -5,7 +5,12 @@ use tailorbird::prelude::*;
 
 fn main() {
     App::new()
-        .add_plugins((DefaultPlugins, ClothPlugins::default()))
+        .add_plugins((
+            DefaultPlugins,
+            ClothPlugins::default(),
+            // For toys: drags cloth with the mouse and pins it by P; moves balls by the arrow keys.
+            (ClothDragPlugin, SphereControlsPlugin),
+        ))
         .add_systems(Startup, setup)
         .run();
 }

@@ -4,7 +4,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::{
-    input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit},
+    input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollPixelsPerLine},
     post_process::dof::DepthOfField,
     prelude::*,
 };
@@ -105,6 +105,7 @@ fn turn_by_mouse(
     buttons: Res<ButtonInput<MouseButton>>,
     motion: Res<AccumulatedMouseMotion>,
     scroll: Res<AccumulatedMouseScroll>,
+    pixels_per_line: Res<MouseScrollPixelsPerLine>,
     panel: Option<Res<EguiWantsInput>>,
     dragged: Query<(), With<ClothDrag>>,
     mut hold: Local<Hold>,
@@ -118,10 +119,7 @@ fn turn_by_mouse(
     } else if !buttons.any_pressed([MouseButton::Right, MouseButton::Middle]) {
         *hold = Hold::None;
     }
-    let notches = match scroll.unit {
-        MouseScrollUnit::Line => scroll.delta.y,
-        MouseScrollUnit::Pixel => scroll.delta.y / MouseScrollUnit::SCROLL_UNIT_CONVERSION_FACTOR,
-    };
+    let notches = scroll.to_lines(&pixels_per_line).delta.y;
     let zooms = !over_panel && dragged.is_empty();
     for mut camera in &mut cameras {
         if zooms && notches != 0.0 {

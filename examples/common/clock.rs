@@ -1,6 +1,8 @@
 //! How long the parts of a step take, and what a frame does with it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use bevy::platform::time::Instant;
 
 use bevy::prelude::*;
 use tailorbird::{mesh::ClothMeshSystems, prelude::*};

@@ -1,18 +1,13 @@
 //! Whether there is something to draw with.
 
-use std::sync::Arc;
-
-use bevy::{
-    render::renderer::{RenderInstance, WgpuWrapper},
-    tasks::block_on,
-};
+use bevy::{render::renderer::RenderInstance, tasks::block_on};
 
 /// Whether there is a graphics driver, and if not, what to do about it, in one line.
 ///
 /// # Errors
 /// When there is none.
 pub fn check_driver() -> Result<(), String> {
-    let instance = RenderInstance(Arc::new(WgpuWrapper::new(Default::default())));
+    let instance = RenderInstance::new(Default::default());
     block_on(instance.request_adapter(&Default::default()))
         .map(drop)
         .map_err(|_| format!("there is no graphics driver; {}", advice()))

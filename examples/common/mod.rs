@@ -52,6 +52,7 @@ pub fn play(name: &str, scene: scenes::SceneKind) -> ExitCode {
         .add_plugins((
             DefaultPlugins.set(garment::gltf()),
             ClothPlugins::default(),
+            (ClothDragPlugin, SphereControlsPlugin),
             apply::DemoPlugin {
                 settings: settings::DemoSettings::of(scene),
                 ..default()

@@ -128,6 +128,7 @@ impl Offscreen {
         app.add_plugins((
             plugins(options.size),
             ClothPlugins::default(),
+            (ClothDragPlugin, SphereControlsPlugin),
             WireframePlugin::default(),
         ));
         let UVec2 { x, y } = options.size;

@@ -106,6 +106,7 @@ fn play(arguments: &Arguments) -> Result<ExitCode, String> {
         )
         .add_plugins((
             ClothPlugins::default(),
+            (ClothDragPlugin, SphereControlsPlugin),
             DemoPlugin {
                 settings,
                 stage: StagePlugin {

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use bevy::{input::ButtonState, picking::events::Over, prelude::*, time::TimeUpdateStrategy};
+use bevy::{
+    input::ButtonState, picking::events::PointerOver, prelude::*, time::TimeUpdateStrategy,
+};
 use tailorbird::prelude::*;
 
 use crate::game::*;
@@ -203,16 +205,16 @@ fn pointer_events_carry_triangle_and_weights() {
         ..default()
     });
     app.init_resource::<Found>();
-    app.world_mut().entity_mut(cloth).observe(
-        |over: On<Pointer<Over>>, mut found: ResMut<Found>| {
+    app.world_mut()
+        .entity_mut(cloth)
+        .observe(|over: On<PointerOver>, mut found: ResMut<Found>| {
             let (Some(hit), Some(position)) =
                 (over.hit.extra_as::<ClothPointerHit>(), over.hit.position)
             else {
                 panic!("a hit without data");
             };
             found.0 = Some((*hit, position));
-        },
-    );
+        });
     frames(&mut app, 3);
     let target = Vec3::new(0.33, -0.21, 0.0);
     let place = on_screen(&app, camera, target);

@@ -62,7 +62,12 @@ pub fn unfinished() -> App {
             }),
     )
     // Without a graphics driver Bevy leaves this out, and despawning a camera then panics.
-    .add_plugins((bevy::render::sync_world::SyncWorldPlugin, ClothPlugins::default()))
+    .add_plugins((
+        bevy::extract::sync_world::SyncWorldPlugin::<bevy::render::RenderApp>::default(),
+        ClothPlugins::default(),
+        ClothDragPlugin,
+        SphereControlsPlugin,
+    ))
     .insert_resource(Time::<Fixed>::from_hz(HERTZ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / HERTZ)));
     app

@@ -22,7 +22,7 @@ fn every_component_is_registered() {
     let world = sim.app.world();
     let registry = world.resource::<AppTypeRegistry>().read();
     for entity in [cloth, sphere] {
-        for info in world.inspect_entity(entity).unwrap() {
+        for (_, info) in world.inspect_entity(entity).unwrap() {
             let name = info.name().to_string();
             if !name.starts_with("tailorbird") {
                 continue;

@@ -56,7 +56,7 @@ impl Sim {
     pub fn of(mut app: App) -> Self {
         if std::env::var("TAILORBIRD_TEST_SOLVER").is_ok_and(|name| name == "gauss-seidel") {
             app.add_observer(
-                |added: On<Add, Cloth>, mut solvers: Query<&mut ClothSolver>| {
+                |added: On<Add<Cloth>>, mut solvers: Query<&mut ClothSolver>| {
                     if let Ok(mut solver) = solvers.get_mut(added.entity) {
                         *solver = ClothSolver::GaussSeidel;
                     }

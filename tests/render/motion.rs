@@ -52,14 +52,14 @@ fn app(test: &str) -> Option<Offscreen> {
             .add(ClothMotionVectorsPlugin)
     })?;
     let source = "
-        #import bevy_pbr::{forward_io::VertexOutput, prepass_utils}
+        import bevy_pbr::{prepass::utils, render::forward_io::VertexOutput};
         @fragment
         fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
-            let motion = prepass_utils::prepass_motion_vector(in.position, 0u);
+            let motion = utils::prepass_motion_vector(in.position, 0u);
             return vec4<f32>(motion * 20.0 + 0.5, 0.0, 1.0);
         }";
     let world = app.app.world_mut();
-    let shader = Shader::from_wgsl(source, "looking.wgsl");
+    let shader = Shader::from_wesl(source, "looking.wesl");
     let inserted = world
         .resource_mut::<Assets<Shader>>()
         .insert(&SHADER, shader);

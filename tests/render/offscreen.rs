@@ -19,7 +19,7 @@ use bevy::{
         RenderPlugin,
         pipelined_rendering::PipelinedRenderingPlugin,
         render_resource::{PollType, TextureFormat},
-        renderer::{RenderDevice, RenderInstance, WgpuWrapper},
+        renderer::{RenderDevice, RenderInstance},
         settings::{Backends, WgpuSettings},
         view::screenshot::{Screenshot, ScreenshotCaptured},
     },
@@ -58,7 +58,7 @@ fn has_adapter() -> bool {
     static FOUND: OnceLock<bool> = OnceLock::new();
     *FOUND.get_or_init(|| {
         // The only way to the instance's type without depending on wgpu.
-        let instance = RenderInstance(Arc::new(WgpuWrapper::new(Default::default())));
+        let instance = RenderInstance::new(Default::default());
         !block_on(instance.enumerate_adapters(Backends::PRIMARY)).is_empty()
     })
 }
@@ -126,7 +126,11 @@ impl Offscreen {
         });
         let mut app = App::new();
         app.add_plugins(change(plugins))
-            .add_plugins(ClothPlugins::default())
+            .add_plugins((
+                ClothPlugins::default(),
+                ClothDragPlugin,
+                SphereControlsPlugin,
+            ))
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
         app.finish();
         app.cleanup();

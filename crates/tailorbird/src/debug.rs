@@ -20,8 +20,9 @@ use bevy_gizmos::{
     config::{GizmoConfigGroup, GizmoConfigStore},
     gizmos::Gizmos,
 };
-use bevy_math::{Vec3, bounding::Aabb3d};
+use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use bevy_shape::Aabb3d;
 use bevy_transform::TransformSystems;
 use tailorbird_cloth::{prelude::*, topology::constraints::ConstraintFamily};
 

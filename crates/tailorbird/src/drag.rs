@@ -10,16 +10,17 @@ use bevy_ecs::prelude::*;
 use bevy_input::{
     ButtonInput,
     keyboard::KeyCode,
-    mouse::{MouseScrollUnit, MouseWheel},
+    mouse::{MouseScrollPixelsPerLine, MouseScrollUnit, MouseWheel},
 };
-use bevy_math::{Ray3d, Vec3};
+use bevy_math::Vec3;
 use bevy_picking::{
     PickingSystems,
     backend::ray::{RayId, RayMap},
-    events::{Pointer, Press},
+    events::PointerPress,
     pointer::{PointerAction, PointerButton, PointerId, PointerInput},
 };
 use bevy_reflect::prelude::*;
+use bevy_shape::Ray3d;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::prelude::*;
 
@@ -132,7 +133,7 @@ fn at_depth(ray: &Ray3d, camera: &GlobalTransform, depth: f32) -> Option<Vec3> {
 }
 
 fn grab(
-    press: On<Pointer<Press>>,
+    press: On<PointerPress>,
     settings: Res<ClothDragSettings>,
     mut cloths: Query<(&mut ClothGrab, &ClothParticles, &ClothFrame), Without<ClothDrag>>,
     cameras: Query<&GlobalTransform, With<Camera>>,
@@ -163,7 +164,7 @@ fn grab(
     let held = particles.world_position(particle, frame);
     grab.take(particle as u32, settings.radius, held);
     commands.entity(entity).insert(ClothDrag {
-        pointer: press.pointer_id,
+        pointer: press.pointer.id,
         camera: press.hit.camera,
         depth: (point - camera.translation()).dot(*camera.forward()),
         offset: held - point,
@@ -252,15 +253,17 @@ fn move_hand(
     settings: Res<ClothDragSettings>,
     rays: Res<RayMap>,
     wheel: Option<MessageReader<MouseWheel>>,
+    pixels_per_line: Option<Res<MouseScrollPixelsPerLine>>,
     mut cloths: Query<(&mut ClothGrab, &mut ClothDrag)>,
     cameras: Query<&GlobalTransform, With<Camera>>,
 ) {
+    let pixels_per_line = pixels_per_line.map_or_else(Default::default, |ratio| *ratio);
     let notches: f32 = wheel.map_or(0.0, |mut wheel| {
         wheel
             .read()
             .map(|event| match event.unit {
                 MouseScrollUnit::Line => event.y,
-                MouseScrollUnit::Pixel => event.y / MouseScrollUnit::SCROLL_UNIT_CONVERSION_FACTOR,
+                MouseScrollUnit::Pixel => event.y / pixels_per_line,
             })
             .sum()
     });

@@ -15,14 +15,15 @@ use crate::prelude::*;
 /// | [`ClothPlugin`] | simulates; alone, it is all that a server needs |
 /// | [`ClothMeshPlugin`] | builds a mesh for each cloth, and writes it once per frame, between the last two steps |
 /// | [`ClothFabricPlugin`] | gives cloths the material of their [`ClothLook`] |
-/// | [`ClothPickingPlugin`] | lets pointers hit cloth: `On<Pointer<…>>` observers work on it as on any mesh |
-/// | [`ClothDragPlugin`] | drags cloth with the pointer, and pins it with a key |
-/// | [`SphereControlsPlugin`] | moves entities with [`SphereControls`] by keys |
+/// | [`ClothPickingPlugin`] | lets pointers hit cloth: observers of `PointerPress` and the like work on it as on any mesh |
 /// | [`ClothDiagnosticsPlugin`] | counts, times and measures stretch for Bevy's `DiagnosticsStore` |
 /// | [`ClothDebugPlugin`] | draws particles, constraints, pins, normals and bounds; off until asked for |
 ///
-/// Each can be left out: `ClothPlugins::default().build().disable::<ClothDragPlugin>()`. Without a renderer, a window or
+/// Each can be left out: `ClothPlugins::default().build().disable::<ClothDebugPlugin>()`. Without a renderer, a window or
 /// picking the parts that need them do nothing.
+///
+/// None of them listens to mouse or keys. What does is added by name: [`ClothDragPlugin`] lets the pointer drag every cloth and a key pin
+/// it, [`SphereControlsPlugin`] lets keys move entities with [`SphereControls`].
 pub struct ClothPlugins {
     schedule: Interned<dyn ScheduleLabel>,
 }
@@ -67,8 +68,6 @@ impl PluginGroup for ClothPlugins {
             })
             .add(ClothFabricPlugin::default())
             .add(ClothPickingPlugin)
-            .add(ClothDragPlugin)
-            .add(SphereControlsPlugin)
             .add(ClothDiagnosticsPlugin)
             .add(ClothDebugPlugin)
     }

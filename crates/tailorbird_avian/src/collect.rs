@@ -57,7 +57,7 @@ impl PlaceItem<'_, '_> {
     pub(crate) fn pose(&self, body: Option<(Vec3, bevy_math::Quat)>) -> Isometry3d {
         match (body, self.in_body) {
             (Some((position, rotation)), Some(to)) => {
-                Isometry3d::new(position, rotation) * Isometry3d::new(to.translation, to.rotation.0)
+                Isometry3d::new(position, rotation) * Isometry3d::new(to.translation, to.rotation)
             }
             _ => Isometry3d::new(self.position.0, self.rotation.0),
         }

@@ -1,6 +1,8 @@
 //! Figures about a cloth: stretch, energy, momentum; how long a step takes.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use bevy_platform::time::Instant;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;

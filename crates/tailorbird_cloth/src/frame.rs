@@ -261,9 +261,20 @@ pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Vec3), C
     Ok((Isometry3d::new(translation, rotation.normalize()), scale))
 }
 
+/// What is wrong with a world transform whose axes are not at right angles.
+fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
+    /// Of rounding, several parents deep.
+    const MOST: f32 = 1e-3;
+    let axes = transform.affine().matrix3;
+    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| axis.normalize_or_zero());
+    let value = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
+    (value > MOST).then_some(ClothErrorKind::Shear { value, most: MOST })
+}
+
 /// Reads where the entities of the cloths are.
 ///
-/// A transform that is not finite is reported, and the frame stays where it was.
+/// A transform that is not finite is reported, and the frame stays where it was. One that is sheared is reported, and the frame follows
+/// it without the shear.
 pub fn prepare_frames(
     step: Res<ClothStep>,
     helper: TransformHelper,
@@ -291,7 +302,7 @@ pub fn prepare_frames(
             Ok((isometry, scale)) => {
                 frame.set_scale(scale);
                 frame.place(isometry, seconds);
-                None
+                check_shear(&transform)
             }
             Err(error) => {
                 let stay = frame.end;

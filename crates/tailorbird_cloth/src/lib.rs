@@ -50,6 +50,7 @@ mod runner;
 pub mod schedule;
 pub mod settings;
 pub mod sleep;
+pub mod slow_build;
 pub mod solver;
 pub mod stages;
 pub mod step;

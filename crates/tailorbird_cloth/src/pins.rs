@@ -123,6 +123,16 @@ impl ClothPin {
     }
 }
 
+impl ClothPin {
+    /// Whether it names particles by where they are, so that it means something on another shape as well.
+    pub fn is_by_place(&self) -> bool {
+        !matches!(
+            self.selection,
+            PinSelection::Particle(_) | PinSelection::Particles(_) | PinSelection::Cell(_)
+        )
+    }
+}
+
 impl ClothPins {
     fn of(selections: impl IntoIterator<Item = PinSelection>) -> Self {
         Self {

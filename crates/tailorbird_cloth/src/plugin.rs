@@ -30,6 +30,7 @@ use crate::{
     runner::{OwnStages, simulate_cloths},
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
     sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
+    slow_build::warn_of_slow_build,
     solver::{calm_knots, solve_constraints, verlet_step},
     step::{begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
@@ -146,6 +147,7 @@ impl Plugin for ClothPlugin {
                     .run_if(not(step_is_whole)),
                 break_attachments.run_if(step_runs),
                 stop_clock,
+                warn_of_slow_build,
             )
                 .chain(),
         );

@@ -1,6 +1,7 @@
 //! Questions about where a cloth is.
 
-use bevy_math::{Ray3d, Vec3};
+use bevy_math::Vec3;
+use bevy_shape::Ray3d;
 
 use crate::{bounds::ClothBounds, particles::ClothParticles, topology::Topology};
 

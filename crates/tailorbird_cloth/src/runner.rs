@@ -4,7 +4,7 @@
 //! can go through all of them while it is in the cache. Many small cloths are shared out to threads; a large one has all
 //! threads to itself.
 
-use std::time::Instant;
+use bevy_platform::time::Instant;
 
 use bevy_ecs::{
     prelude::*,

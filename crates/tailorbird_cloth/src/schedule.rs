@@ -1,6 +1,6 @@
 //! Sets, and the schedule that runs once per substep.
 
-use std::time::Instant;
+use bevy_platform::time::Instant;
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 

@@ -3,10 +3,8 @@
 use bevy_color::{Srgba, palettes::tailwind};
 use bevy_ecs::prelude::*;
 use bevy_gizmos::{gizmos::Gizmos, primitives::dim3::GizmoPrimitive3d};
-use bevy_math::{
-    Affine3A, Isometry3d, Quat, Vec2, Vec3,
-    primitives::{Capsule3d, Cylinder},
-};
+use bevy_math::{Affine3A, Isometry3d, Quat, Vec2, Vec3};
+use bevy_shape::{Capsule3d, Cylinder};
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{collider::HeightField, prelude::*};
 

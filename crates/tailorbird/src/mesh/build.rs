@@ -119,7 +119,8 @@ pub(super) fn build_cloth_mesh(
 ) {
     for (entity, cloth, topology, shading, normals, source, built) in &cloths {
         let shows = |part: &ClothMeshPart| match meshes_of_parts.get(part.entity) {
-            Ok(mesh) => mesh.0 == part.handle,
+            // Another mesh, where the cloth was made of meshes, becomes another cloth.
+            Ok(mesh) => mesh.0 == part.handle || source.is_some(),
             // The cloth itself has lost it; a part that is gone stays away.
             Err(_) => part.entity != entity,
         };
@@ -132,8 +133,10 @@ pub(super) fn build_cloth_mesh(
         if current || topology.revision == 0 || normals.shading() != *shading {
             continue;
         }
-        let of_meshes =
-            source.and_then(|source| Vertices::of_meshes(&source.parts, &cloth.shape, &meshes));
+        let of_meshes = source.and_then(|source| {
+            let left_out = source.left_out.as_slice();
+            Vertices::of_meshes(&source.parts, &cloth.shape, &meshes, left_out)
+        });
         let all: Vec<(Vertices, Option<&MeshSource>)> = match of_meshes {
             Some(all) => all
                 .into_iter()

@@ -198,9 +198,13 @@ impl Follow {
                 offset: normal,
             },
         );
-        // Normals transform by the inverse of the scale, so here by the scale.
+        // Normals transform by the inverse of the scale, so here by the scale. In a mirror particles go round triangles the other way
+        // than vertices do, and their normals are on the other side.
         if !drawn.is_scaled_evenly() {
-            each(words, stride, normal, |n| (n * scale).normalize_or(n));
+            let side = scale.element_product().signum();
+            each(words, stride, normal, |n| {
+                (n * scale * side).normalize_or(n)
+            });
         }
         if let Some(from_cloth) = self.from_cloth {
             each(words, stride, position, |p| from_cloth.transform_point3(p));

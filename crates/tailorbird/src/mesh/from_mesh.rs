@@ -1,9 +1,11 @@
 //! Makes a cloth of meshes that are there already.
 
+use std::collections::HashSet;
+
 use bevy_camera::{primitives::Aabb, visibility::NoAutoAabb};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_mesh::{Mesh, Mesh3d};
+use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, skinning::SkinnedMesh};
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
@@ -12,9 +14,11 @@ use tailorbird_cloth::{
     topology::repair::Repaired,
     weights::ClothWeights,
 };
+use tracing::warn;
 
 use super::{
     ClothMeshOf, MeshParts, MeshPins,
+    changes::Changes,
     parts::{Finder, Found, MeshSource, append},
 };
 
@@ -23,9 +27,14 @@ use super::{
 ///
 /// The entity gets a [`Cloth`] of all triangles. Each mesh is replaced by a copy that the cloth moves, with the same UVs, colours,
 /// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are
-/// kept in the main world. Where the entities below are at that time counts, not where they are moved later.
+/// kept in the main world, and may be compressed. Where the entities below are at that time counts, not where they are moved later.
 ///
-/// Change it, or remove the `Cloth`, and the cloth is made again. What is wrong with the assets is told by [`ClothStatus`], what
+/// What moves the mesh by other means stays behind: of a skin and of morph targets the copy has nothing, and `SkinnedMesh` is taken off
+/// its entity, else each vertex would be moved twice. The log says so.
+///
+/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made
+/// again, flat as the mesh is. Material, shading and pins that are given by place stay; pins that players made, and others given by
+/// index, go with the particles that they named. What is wrong with the assets is told by [`ClothStatus`], what
 /// was found in the triangles by [`Topology::report`](tailorbird_cloth::topology::Topology::report).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Default)]
@@ -37,6 +46,9 @@ pub struct ClothFromMesh {
     pub pins: MeshPins,
     /// Which of the meshes below the entity it is made of.
     pub parts: MeshParts,
+    /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
+    /// would tint the cloth.
+    pub draw_paint: bool,
 }
 
 impl Default for ClothFromMesh {
@@ -46,6 +58,7 @@ impl Default for ClothFromMesh {
             weld_distance: Cloth::WELD_DISTANCE,
             pins: MeshPins::None,
             parts: MeshParts::All,
+            draw_paint: false,
         }
     }
 }
@@ -74,10 +87,17 @@ impl ClothFromMesh {
 #[derive(Component, Clone, Debug)]
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
+    /// Their attributes that are not drawn.
+    pub left_out: Option<MeshVertexAttribute>,
     /// The pin that they name.
     pin: Option<ClothPin>,
 }
 
+/// The skin that a mesh had before it became cloth.
+#[derive(Component, Clone, Debug)]
+pub(super) struct SkinSetAside(SkinnedMesh);
+
+/// Makes cloths of meshes that are there, and makes them anew when those are others.
 pub(super) fn cloth_from_mesh(
     mut entities: Query<(
         Entity,
@@ -87,27 +107,46 @@ pub(super) fn cloth_from_mesh(
         Has<Cloth>,
         &mut ClothStatus,
     )>,
+    mut changes: Changes,
+    mut pending: Local<HashSet<Entity>>,
     finder: Finder,
-    parts: Query<&ClothMeshOf>,
+    parts: Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
+    skins: Query<&SkinnedMesh>,
     mut commands: Commands,
     parallel_commands: ParallelCommands,
 ) {
+    let happened = changes.read();
+    pending.extend(happened.makers);
     for (entity, from_mesh, pins, source, is_cloth, mut status) in &mut entities {
+        let other_assets = source.is_some_and(|source| {
+            let mut parts = source.parts.iter();
+            parts.any(|part| happened.assets.contains(&part.mesh.id()))
+        });
+        let asked = !is_cloth || from_mesh.is_changed() || other_assets;
         // A cloth that was not made here stays what it is.
-        let made = source.is_some() && from_mesh.is_changed();
-        if is_cloth && !made {
+        if is_cloth && source.is_none() || !asked && !pending.contains(&entity) {
             continue;
         }
         let mut errors = Vec::new();
         match make(entity, &from_mesh, &finder, &mut errors) {
-            Ok(None) => {}
-            Ok(Some(made)) => {
+            Ok(None) => {
+                // What is still being loaded is waited for; meanwhile the cloth stays what it was.
+                pending.insert(entity);
+                continue;
+            }
+            Ok(Some(made))
+                if asked || source.is_none_or(|old| !old.has_same_parts(&made.source)) =>
+            {
                 let mut pins = pins.cloned().unwrap_or_default();
                 if let Some(old) = source {
                     pins.pins.retain(|pin| Some(pin) != old.pin.as_ref());
+                    if other_assets || !old.has_same_parts(&made.source) {
+                        pins.pins.retain(ClothPin::is_by_place);
+                    }
                     give_back(old, &made.source, &parts, &mut commands);
                 }
                 pins.pins.extend(made.source.pin.clone());
+                set_skins_aside(entity, &made.source, &finder, &skins, &mut commands);
                 let mut entity = commands.entity(entity);
                 entity.insert((made.cloth, made.source, pins));
                 match made.weights {
@@ -115,14 +154,62 @@ pub(super) fn cloth_from_mesh(
                     None => entity.remove::<ClothWeights>(),
                 };
             }
+            Ok(Some(_)) => {}
             Err(error) => errors.push(error),
         }
+        pending.remove(&entity);
         ClothStatus::update(
             &mut status,
             entity,
             &parallel_commands,
             ErrorSource::Mesh,
             errors,
+        );
+    }
+    pending.retain(|entity| entities.contains(*entity));
+}
+
+impl ClothMeshSource {
+    /// Whether these are the same meshes of the same entities.
+    fn has_same_parts(&self, other: &Self) -> bool {
+        let same = |a: &MeshSource, b: &MeshSource| a.entity == b.entity && a.mesh == b.mesh;
+        self.parts.len() == other.parts.len()
+            && self.parts.iter().zip(&other.parts).all(|(a, b)| same(a, b))
+    }
+}
+
+/// Takes the skins off the meshes that become cloth, and tells what of them does not move it.
+fn set_skins_aside(
+    cloth: Entity,
+    source: &ClothMeshSource,
+    finder: &Finder,
+    skins: &Query<&SkinnedMesh>,
+    commands: &mut Commands,
+) {
+    for part in &source.parts {
+        let morphs = finder
+            .mesh(part)
+            .is_some_and(|mesh| matches!(mesh.try_has_morph_targets(), Ok(true)));
+        let skin = skins.get(part.entity).ok();
+        if let Some(skin) = skin {
+            commands
+                .entity(part.entity)
+                .insert(SkinSetAside(skin.clone()))
+                .remove::<SkinnedMesh>();
+        }
+        let ignored = match (skin, morphs) {
+            (Some(skin), true) => format!(
+                "its skin ({} joints) and its morph targets",
+                skin.joints.len()
+            ),
+            (Some(skin), false) => format!("its skin ({} joints)", skin.joints.len()),
+            (None, true) => "its morph targets".to_owned(),
+            (None, false) => continue,
+        };
+        warn!(
+            "{cloth}: the mesh of {} becomes cloth, so {ignored} no longer move it; hold it with ClothAttachment, or give it \
+             ClothMotionTargets",
+            part.entity
         );
     }
 }
@@ -170,7 +257,11 @@ fn make(
     };
     Ok(Some(Made {
         cloth: Cloth { shape },
-        source: ClothMeshSource { parts, pin },
+        source: ClothMeshSource {
+            parts,
+            left_out: from_mesh.pins.paint().filter(|_| !from_mesh.draw_paint),
+            pin,
+        },
         weights,
     }))
 }
@@ -198,16 +289,23 @@ fn held(
 fn give_back(
     old: &ClothMeshSource,
     new: &ClothMeshSource,
-    parts: &Query<&ClothMeshOf>,
+    parts: &Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
     commands: &mut Commands,
 ) {
     for part in &old.parts {
         let stays = new.parts.iter().any(|other| other.entity == part.entity);
-        if !stays && parts.contains(part.entity) {
-            commands
-                .entity(part.entity)
-                .insert(Mesh3d(part.mesh.clone()))
-                .remove::<(ClothMeshOf, NoAutoAabb, Aabb)>();
+        let Ok((_, skin)) = parts.get(part.entity) else {
+            continue;
+        };
+        if stays {
+            continue;
+        }
+        let mut entity = commands.entity(part.entity);
+        entity
+            .insert(Mesh3d(part.mesh.clone()))
+            .remove::<(ClothMeshOf, SkinSetAside, NoAutoAabb, Aabb)>();
+        if let Some(SkinSetAside(skin)) = skin {
+            entity.insert(skin.clone());
         }
     }
 }

@@ -1,12 +1,14 @@
 //! From particles to the picture: builds a mesh for each cloth and writes it once per frame.
 
 mod build;
+mod changes;
 mod follow;
 mod from_mesh;
 pub mod garments;
 mod packed;
 mod parts;
 mod pins;
+mod plain;
 pub mod rendering;
 mod slab;
 mod sorting;
@@ -113,6 +115,7 @@ impl Plugin for ClothMeshPlugin {
                     .run_if(resource_exists::<Assets<Mesh>>),
             )
             .add_observer(slab::forget_vertices)
+            .add_observer(changes::note_ready)
             .add_systems(
                 PreUpdate,
                 from_mesh::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),

@@ -3,13 +3,18 @@
 use bevy_asset::{AssetServer, Assets, Handle, LoadState, UntypedAssetId};
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_math::{Affine3A, Vec3};
-use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology};
 use bevy_reflect::prelude::*;
+use bevy_scene::ScenePatchInstance;
 use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
 use tailorbird_cloth::{cloth::Cloth, error::ClothErrorKind};
 
-use super::{ClothFromMesh, ClothMeshOf};
+use super::{
+    ClothFromMesh, ClothMeshOf,
+    changes::SceneComplete,
+    plain::{self, unusable},
+};
 
 /// Which of the meshes below an entity become its cloth.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
@@ -50,6 +55,8 @@ pub(super) struct Finder<'w, 's> {
             Option<&'static Mesh3d>,
             Option<&'static ClothMeshOf>,
             Option<&'static WorldAssetRoot>,
+            Option<&'static ScenePatchInstance>,
+            Has<SceneComplete>,
             Has<ClothFromMesh>,
             Has<Cloth>,
         ),
@@ -69,7 +76,8 @@ impl Finder<'_, '_> {
             (Vec::new(), Vec::new(), false, 0);
         let mut stack = vec![(entity, Affine3A::IDENTITY, matches!(parts, MeshParts::All))];
         while let Some((node, to_cloth, mut meant)) = stack.pop() {
-            let Ok((transform, name, mesh, part, scene, from_mesh, cloth)) = self.nodes.get(node)
+            let Ok((transform, name, mesh, part, scene, patch, complete, from_mesh, cloth)) =
+                self.nodes.get(node)
             else {
                 continue;
             };
@@ -89,6 +97,10 @@ impl Finder<'_, '_> {
                 scenes += 1;
                 waits |= children.is_none();
             }
+            if let Some(patch) = patch.filter(|_| !complete) {
+                self.check_loaded(patch.0.id().untyped(), || format!("{:?}", patch.0.path()))?;
+                waits = true;
+            }
             if let Some(mesh) = mesh {
                 let source = MeshSource {
                     entity: node,
@@ -97,7 +109,7 @@ impl Finder<'_, '_> {
                 };
                 if node == entity {
                     found = vec![source];
-                    waits = false;
+                    waits = patch.is_some() && !complete;
                     break;
                 } else if meant {
                     found.push(source);
@@ -119,12 +131,12 @@ impl Finder<'_, '_> {
             return Ok(Found::Nothing);
         }
         if found.is_empty() && !other_names.is_empty() {
-            let reason = format!("has none of the names of {parts:?}, but {other_names:?}");
-            return Err(ClothErrorKind::UnusableMesh { reason });
+            return Err(unusable(format!(
+                "has none of the names of {parts:?}, but {other_names:?}"
+            )));
         }
         if found.is_empty() && scenes > 0 {
-            let reason = "is on none of the scene's entities".into();
-            return Err(ClothErrorKind::UnusableMesh { reason });
+            return Err(unusable("is on none of the scene's entities"));
         }
         Ok(if found.is_empty() {
             Found::Nothing
@@ -171,17 +183,10 @@ pub(super) fn append(
     positions: &mut Vec<Vec3>,
     indices: &mut Vec<u32>,
 ) -> Result<(), ClothErrorKind> {
-    let unusable = |reason: &str| ClothErrorKind::UnusableMesh {
-        reason: reason.into(),
-    };
     if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
         return Err(unusable("is not a triangle list"));
     }
-    let places = match mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION) {
-        Ok(Some(VertexAttributeValues::Float32x3(places))) => places,
-        Ok(_) => return Err(unusable("has no positions of three f32")),
-        Err(_) => return Err(unusable("is kept in the render world alone")),
-    };
+    let places = plain::positions(mesh)?;
     let first = positions.len() as u32;
     let start = indices.len();
     match mesh.try_indices_option().ok().flatten() {

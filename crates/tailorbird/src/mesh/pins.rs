@@ -3,9 +3,11 @@
 use std::{fmt, sync::Arc};
 
 use bevy_math::Vec3;
-use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues, VertexFormat};
+use bevy_mesh::{Mesh, MeshVertexAttribute, VertexFormat};
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::error::ClothErrorKind;
+
+use super::plain;
 
 /// How firmly each vertex is held: 0 is free, 1 is pinned. The attribute for `_CLOTH_PIN` of a glTF file; see the
 /// [guide](super::garments).
@@ -94,6 +96,15 @@ impl MeshPins {
         matches!(self, Self::Color { .. } | Self::Attribute { .. })
     }
 
+    /// The attribute that is paint: numbers that mean pins and weights, not colours.
+    pub(super) fn paint(&self) -> Option<MeshVertexAttribute> {
+        match self {
+            Self::Color { .. } => Some(Mesh::ATTRIBUTE_COLOR),
+            Self::Attribute { attribute, .. } => Some(*attribute),
+            _ => None,
+        }
+    }
+
     /// The weight above which a vertex is pinned.
     ///
     /// # Errors
@@ -180,24 +191,11 @@ fn read(
     for mesh in meshes {
         let first = weights.len();
         let values = mesh.try_attribute_option(attribute).ok().flatten();
-        match values {
-            Some(VertexAttributeValues::Float32(values)) if channel == 0 => {
-                weights.extend_from_slice(values);
-            }
-            Some(VertexAttributeValues::Float32x2(values)) if channel < 2 => {
-                weights.extend(values.iter().map(|value| value[channel]));
-            }
-            Some(VertexAttributeValues::Float32x3(values)) if channel < 3 => {
-                weights.extend(values.iter().map(|value| value[channel]));
-            }
-            Some(VertexAttributeValues::Float32x4(values)) => {
-                weights.extend(values.iter().map(|value| value[channel]));
-            }
-            Some(VertexAttributeValues::Unorm8x4(values)) => {
-                weights.extend(values.iter().map(|value| f32::from(value[channel]) / 255.0));
-            }
-            _ => {}
-        }
+        weights.extend(
+            values
+                .and_then(|values| plain::channel(values, channel))
+                .unwrap_or_default(),
+        );
         found |= weights.len() > first;
         weights.resize(first + mesh.count_vertices(), 0.0);
     }

@@ -12,7 +12,10 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 use bevy_render::{
     ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems,
-    mesh::{RenderMesh, allocator::MeshAllocator},
+    mesh::{
+        RenderMesh,
+        allocator::{MeshAllocator, allocate_and_free_meshes},
+    },
     render_asset::{AssetExtractionSystems, ExtractedAssets, RenderAssets},
     render_resource::{BufferId, BufferUsages},
     renderer::RenderQueue,
@@ -77,6 +80,9 @@ pub(super) fn finish(app: &mut App) {
             Render,
             write_vertices
                 .in_set(RenderSystems::PrepareResources)
+                // What goes through the queue is no conflict that the schedule could see.
+                .after(allocate_and_free_meshes)
+                .before(RenderSystems::Render)
                 .run_if(resource_exists::<MeshAllocator>),
         );
     app.init_resource::<VertexUploads>();
@@ -84,7 +90,7 @@ pub(super) fn finish(app: &mut App) {
 
 /// Forgets the vertices of a cloth that goes: its meshes belong to others, if to anyone.
 pub(super) fn forget_vertices(
-    gone: On<Remove, ClothMesh>,
+    gone: On<Remove<ClothMesh>>,
     cloths: Query<&ClothMesh>,
     uploads: Option<ResMut<VertexUploads>>,
 ) {

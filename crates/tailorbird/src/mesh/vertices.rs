@@ -2,10 +2,12 @@
 
 use bevy_asset::{Assets, RenderAssetUsages};
 use bevy_math::{UVec2, Vec2};
-use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
+use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
 use tailorbird_cloth::{cloth::ClothShape, normals::ClothShading, topology::Topology};
 
-use super::{build::ClothMeshPart, follow::Follow, parts::MeshSource, tangents::Tangents};
+use super::{
+    build::ClothMeshPart, follow::Follow, parts::MeshSource, plain::plain, tangents::Tangents,
+};
 
 /// The vertices of a mesh in the making, in the order of its source.
 pub(super) struct Vertices {
@@ -63,11 +65,12 @@ impl Vertices {
         sources: &'a [MeshSource],
         shape: &ClothShape,
         meshes: &Assets<Mesh>,
+        left_out: &[MeshVertexAttribute],
     ) -> Option<Vec<(Self, &'a MeshSource)>> {
         let (mut first_vertex, mut first_triangle) = (0, 0);
         let mut all = Vec::with_capacity(sources.len());
         for source in sources {
-            let mut vertices = Self::of_mesh(meshes.get(&source.mesh)?);
+            let mut vertices = Self::of_mesh(plain(meshes.get(&source.mesh)?, left_out).ok()?);
             (vertices.first_vertex, vertices.first_triangle) = (first_vertex, first_triangle);
             first_vertex += vertices.source_vertex.len();
             first_triangle += vertices.indices.len() / 3;
@@ -82,7 +85,7 @@ impl Vertices {
         (positions.len() == first_vertex && indices.len() == 3 * first_triangle).then_some(all)
     }
 
-    fn of_mesh(mesh: &Mesh) -> Self {
+    fn of_mesh(mesh: Mesh) -> Self {
         let uvs = match mesh.attribute(Mesh::ATTRIBUTE_UV_0) {
             Some(VertexAttributeValues::Float32x2(uvs)) => {
                 Some(uvs.iter().map(|uv| Vec2::from(*uv)).collect())
@@ -93,7 +96,7 @@ impl Vertices {
             || (0..mesh.count_vertices() as u32).collect(),
             |indices| indices.iter().map(|i| i as u32).collect(),
         );
-        Self::new(mesh.count_vertices(), indices, uvs, Some(mesh.clone()))
+        Self::new(mesh.count_vertices(), indices, uvs, Some(mesh))
     }
 
     /// The mesh, and how it follows the particles of `topology`.

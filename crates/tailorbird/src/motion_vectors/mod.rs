@@ -46,7 +46,7 @@ pub const ATTRIBUTE_PREVIOUS_POSITION: MeshVertexAttribute = MeshVertexAttribute
     VertexFormat::Float32x3,
 );
 
-/// Of [`ATTRIBUTE_PREVIOUS_POSITION`], in `motion.wgsl`.
+/// Of [`ATTRIBUTE_PREVIOUS_POSITION`], in `motion.wesl`.
 const LOCATION: u32 = 12;
 
 /// Gives cloths motion vectors of their own. Add it after `DefaultPlugins`; without a renderer it does nothing.
@@ -76,7 +76,7 @@ struct Stand(HashMap<AssetId<StandardMaterial>, AssetId<ClothMotionMaterial>>);
 
 impl MaterialExtension for ClothMotion {
     fn prepass_vertex_shader() -> ShaderRef {
-        "embedded://tailorbird/motion_vectors/motion.wgsl".into()
+        "embedded://tailorbird/motion_vectors/motion.wesl".into()
     }
 
     fn deferred_vertex_shader() -> ShaderRef {
@@ -90,7 +90,7 @@ impl MaterialExtension for ClothMotion {
         _key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let vertex = &mut descriptor.vertex;
-        let has = |name: &str| vertex.shader_defs.contains(&name.into());
+        let has = |name: &'static str| vertex.shader_defs.contains(&name.into());
         let meant = has("PREPASS_PIPELINE") && has("MOTION_VECTOR_PREPASS");
         if !meant || !layout.0.contains(ATTRIBUTE_PREVIOUS_POSITION) {
             return Ok(());
@@ -110,7 +110,7 @@ impl Plugin for ClothMotionVectorsPlugin {
         if !app.is_plugin_added::<PbrPlugin>() {
             return;
         }
-        embedded_asset!(app, "motion.wgsl");
+        embedded_asset!(app, "motion.wesl");
         app.add_plugins(MaterialPlugin::<ClothMotionMaterial>::default())
             .init_resource::<Stand>()
             .add_systems(

@@ -1,7 +1,7 @@
 //! Lets pointers hit cloth.
 //!
 //! Two backends find what is under a pointer, and both say it the same way: `bevy_picking`'s `PointerHits`, with a
-//! [`ClothPointerHit`] as the extra data of each hit. So `On<Pointer<…>>` observers work on a cloth as on any mesh.
+//! [`ClothPointerHit`] as the extra data of each hit. So observers of `PointerPress` and the like work on a cloth as on any mesh.
 
 mod depth;
 mod ray;
@@ -42,9 +42,9 @@ pub enum ClothPickingBackend {
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
-/// # use bevy_picking::events::{Pointer, Press};
+/// # use bevy_picking::events::PointerPress;
 /// # use tailorbird::prelude::*;
-/// fn on_press(press: On<Pointer<Press>>) {
+/// fn on_press(press: On<PointerPress>) {
 ///     if let Some(hit) = press.hit.extra_as::<ClothPointerHit>() {
 ///         println!("particle {} of {}", hit.particle, press.entity);
 ///     }

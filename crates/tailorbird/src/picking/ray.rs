@@ -5,9 +5,10 @@ use bevy_camera::{
     visibility::{RenderLayers, ViewVisibility},
 };
 use bevy_ecs::prelude::*;
-use bevy_math::{Dir3, Ray3d};
+use bevy_math::Dir3;
 use bevy_picking::Pickable;
 use bevy_picking::backend::{HitData, PointerHits, ray::RayMap};
+use bevy_shape::Ray3d;
 use tailorbird_cloth::prelude::*;
 
 use super::ClothPointerHit;

@@ -30,7 +30,7 @@ fn collider(form: &Form) -> Collider {
         Form::Capsule(radius, a, b) => Collider::capsule_endpoints(*radius, *a, *b),
         Form::Cylinder(radius, height) => Collider::cylinder(*radius, *height),
         Form::Cone(radius, height) => Collider::cone(*radius, *height),
-        Form::Hull(points) => Collider::convex_hull(points.clone()).unwrap(),
+        Form::Hull(points) => Collider::convex_hull(points).unwrap(),
         Form::Mesh(points, triangles) => Collider::trimesh(points.clone(), triangles.clone()),
         Form::Terrain(height, cells, side) => {
             let place = |k: usize| (k as f32 / *cells as f32 - 0.5) * side;

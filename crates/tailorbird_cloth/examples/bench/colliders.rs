@@ -2,8 +2,10 @@
 
 use std::{
     f32::consts::{FRAC_PI_2, PI, TAU},
-    time::{Duration, Instant},
+    time::Duration,
 };
+
+use bevy_platform::time::Instant;
 
 use bevy_app::{App, FixedPostUpdate, TaskPoolPlugin};
 use bevy_ecs::prelude::*;

@@ -1,9 +1,8 @@
 //! Takes one measurement.
 
-use std::{
-    collections::HashSet,
-    time::{Duration, Instant},
-};
+use std::{collections::HashSet, time::Duration};
+
+use bevy_platform::time::Instant;
 
 use bevy_math::Vec3;
 use tailorbird_cloth::{prelude::*, tethers::ClothTethers, topology::Topology};

@@ -167,6 +167,17 @@ pub enum ClothErrorKind {
         /// The scale.
         value: Vec3,
     },
+    /// The entity's axes are not at right angles in the world: it is turned below a parent that is scaled unevenly.
+    #[error(
+        "Transform is sheared by {value}, must be at most {most}: its axes are not at right angles in the world, since it is turned below a \
+         parent that is scaled unevenly. The cloth is simulated without the shear, so it is drawn beside what holds it"
+    )]
+    Shear {
+        /// The largest cosine of the angle between two axes [-].
+        value: f32,
+        /// The largest that is allowed [-].
+        most: f32,
+    },
     /// A pin, a grab or a force names a particle that is not there.
     #[error("{field} names particle {value}, must be below the number of particles, {particles}")]
     ParticleOutOfRange {

@@ -16,6 +16,7 @@ use crate::world::{Body, Contact, Form, HZ, Kind, Motion};
 pub fn add(app: &mut App, gravity: Vec3) {
     let start = RapierContextInitialization::InitializeDefaultRapierContext {
         integration_parameters: Default::default(),
+        broad_phase_optimization_strategy: Default::default(),
         rapier_configuration: RapierConfiguration {
             gravity,
             ..RapierConfiguration::new(1.0)

@@ -2,8 +2,9 @@
 
 use bevy_camera::visibility::{RenderLayers, ViewVisibility};
 use bevy_ecs::{prelude::*, query::QueryData};
-use bevy_math::{Ray3d, Vec3};
+use bevy_math::Vec3;
 use bevy_picking::{Pickable, backend::HitData};
+use bevy_shape::Ray3d;
 use tailorbird_cloth::prelude::*;
 
 use super::{super::ClothPointerHit, view::VisiblePoint};

@@ -47,7 +47,7 @@ pub(super) fn build(app: &mut App, mailbox: Mailbox) -> bool {
     if app.get_sub_app(RenderApp).is_none() {
         return false;
     }
-    embedded_asset!(app, "read_depth.wgsl");
+    embedded_asset!(app, "read_depth.wesl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return false;
     };
@@ -130,7 +130,7 @@ fn init_depth_reader(
     if !compute || !DEPTH_PREPASS_TEXTURE_SUPPORTED {
         return;
     }
-    let shader = load_embedded_asset!(&*assets, "read_depth.wgsl");
+    let shader = load_embedded_asset!(&*assets, "read_depth.wesl");
     let size = NonZeroU64::new((PROBES * PROBE_BYTES) as u64);
     let pipeline = |name: &'static str, multisampled: bool| {
         let texture = if multisampled {
@@ -296,7 +296,9 @@ fn map_buffers(reader: Option<ResMut<DepthReader>>, mailbox: Res<Mailbox>) {
 impl Batch {
     /// Reads the mapped buffer.
     fn answers(&self) -> Vec<Answer> {
-        let bytes = self.slot.staging.slice(..).get_mapped_range();
+        let Ok(bytes) = self.slot.staging.slice(..).get_mapped_range() else {
+            return Vec::new();
+        };
         bytes
             .chunks_exact(PROBE_BYTES)
             .zip(&self.probes)

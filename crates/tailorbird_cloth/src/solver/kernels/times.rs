@@ -1,6 +1,6 @@
 //! How long the kernels take: for benchmarks.
 
-use std::time::Instant;
+use bevy_platform::time::Instant;
 
 use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;

@@ -1,4 +1,6 @@
-use std::{iter::once, time::Instant};
+use std::iter::once;
+
+use bevy_platform::time::Instant;
 
 use bevy_math::{UVec2, Vec2};
 
