@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         .add_plugins((
             DefaultPlugins,
             ClothPlugins::default(),
-            (ClothDragPlugin, SphereControlsPlugin),
+            ClothDragPlugin,
             StagePlugin::default(),
             ExitAfterFrames,
         ))

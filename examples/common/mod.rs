@@ -39,8 +39,16 @@ pub mod window;
 
 use std::process::ExitCode;
 
-use bevy::prelude::*;
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use tailorbird::prelude::*;
+
+/// Cloth with fine textures, which pointer and keys move.
+pub fn cloth_plugins() -> PluginGroupBuilder {
+    ClothPlugins::default()
+        .set(ClothFabricPlugin::from_folder("textures"))
+        .add(ClothDragPlugin)
+        .add(SphereControlsPlugin)
+}
 
 /// Opens a window with one scene, without a panel.
 pub fn play(name: &str, scene: scenes::SceneKind) -> ExitCode {
@@ -51,8 +59,7 @@ pub fn play(name: &str, scene: scenes::SceneKind) -> ExitCode {
     App::new()
         .add_plugins((
             DefaultPlugins.set(garment::gltf()),
-            ClothPlugins::default(),
-            (ClothDragPlugin, SphereControlsPlugin),
+            cloth_plugins(),
             apply::DemoPlugin {
                 settings: settings::DemoSettings::of(scene),
                 ..default()

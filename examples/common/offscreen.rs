@@ -23,7 +23,7 @@ use bevy::{
     winit::WinitPlugin,
 };
 use image::RgbImage;
-use tailorbird::{fabric::FabricLibrary, prelude::*};
+use tailorbird::fabric::FabricLibrary;
 
 use super::{
     actor::Actor, apply::DemoPlugin, garment, graphics::check_driver, script::Script,
@@ -127,8 +127,7 @@ impl Offscreen {
         let mut app = App::new();
         app.add_plugins((
             plugins(options.size),
-            ClothPlugins::default(),
-            (ClothDragPlugin, SphereControlsPlugin),
+            super::cloth_plugins(),
             WireframePlugin::default(),
         ));
         let UVec2 { x, y } = options.size;

@@ -24,7 +24,6 @@ use common::{
     stage::StagePlugin,
     window::{ExitAfterFrames, PanelPlugin},
 };
-use tailorbird::prelude::*;
 
 /// Real-time cloth: a curtain, a flag, a tablecloth, a sheet over a ball, a cape, a banner, a skirt, crates and a silk curtain before a fan.
 #[derive(Parser)]
@@ -105,8 +104,7 @@ fn play(arguments: &Arguments) -> Result<ExitCode, String> {
                 .set(garment::gltf()),
         )
         .add_plugins((
-            ClothPlugins::default(),
-            (ClothDragPlugin, SphereControlsPlugin),
+            common::cloth_plugins(),
             DemoPlugin {
                 settings,
                 stage: StagePlugin {

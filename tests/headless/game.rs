@@ -64,7 +64,7 @@ pub fn unfinished() -> App {
     // Without a graphics driver Bevy leaves this out, and despawning a camera then panics.
     .add_plugins((
         bevy::extract::sync_world::SyncWorldPlugin::<bevy::render::RenderApp>::default(),
-        ClothPlugins::default(),
+        ClothPlugins::default().set(ClothFabricPlugin::from_folder("textures")),
         ClothDragPlugin,
         SphereControlsPlugin,
     ))

@@ -65,7 +65,7 @@ pub fn run(workspace: &Path, arguments: &[OsString]) -> io::Result<ExitCode> {
     }
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
-        .args(["run", "--example", "demo", "--"])
+        .args(["run", "--ignore-rust-version", "--example", "demo", "--"])
         .args(arguments)
         .current_dir(workspace)
         .status()?;

@@ -23,7 +23,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what the demo needs where that is missing, then run it
+    /// Install what the demo needs where that is missing, then run it; `--help` is the demo's
+    #[command(disable_help_flag = true)]
     Demo {
         /// Passed on to the demo
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -31,7 +32,7 @@ enum Task {
     },
     /// Cut the example garment in assets/garments
     Garment,
-    /// Weave the fabric textures in assets/textures
+    /// Weave the fabric textures: of full size in assets/textures, small ones in the crate
     Textures,
 }
 
@@ -43,7 +44,11 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
             Ok(ExitCode::SUCCESS)
         }
         Task::Textures => {
-            textures::write(&workspace().join("assets/textures"))?;
+            textures::write(&workspace().join("assets/textures"), 1024)?;
+            textures::write(
+                &workspace().join("crates/tailorbird/src/fabric/textures"),
+                256,
+            )?;
             Ok(ExitCode::SUCCESS)
         }
     }

@@ -9,28 +9,26 @@ use image::{
 
 use crate::fabric::{self, Fabric, Texel};
 
-/// Pixels along each side of a texture.
-const SIZE: usize = 1024;
-
-/// Samples along each side of a pixel.
-const SAMPLES: usize = 2;
+/// Samples along each side of a tile.
+const SAMPLES: usize = 2048;
 
 /// How much flatter than the yarns the normals are, so that light on them does not flicker from afar \[-\].
 const RELIEF: f32 = 0.7;
 
-/// Writes every fabric into `folder`.
+/// Writes every fabric into `folder`, with `size` pixels along each side.
 ///
 /// # Errors
 ///
 /// When a file cannot be written.
-pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
+pub fn write(folder: &Path, size: usize) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
     for (name, fabric) in fabric::all() {
-        let texels = sample(&*fabric);
+        let texels = sample(&*fabric, size);
         let file = |kind: &str| folder.join(format!("{name}_{kind}.png"));
         if texels.iter().all(|texel| texel.cover == 1.0) {
             save(
                 &file("albedo"),
+                size,
                 ExtendedColorType::Rgb8,
                 texels.iter().map(albedo),
             )?;
@@ -39,32 +37,39 @@ pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
                 let [r, g, b] = albedo(texel);
                 [r, g, b, byte(texel.cover)]
             });
-            save(&file("albedo"), ExtendedColorType::Rgba8, with_holes)?;
+            save(&file("albedo"), size, ExtendedColorType::Rgba8, with_holes)?;
         }
         let kind = ExtendedColorType::Rgb8;
         save(
             &file("metallic_roughness"),
+            size,
             kind,
             texels.iter().map(metallic_roughness),
         )?;
-        save(&file("normal"), kind, normals(&texels, fabric.units()))?;
+        save(
+            &file("normal"),
+            size,
+            kind,
+            normals(&texels, fabric.units(), size),
+        )?;
     }
     Ok(())
 }
 
 /// The mean of the samples of each pixel, row by row from the top.
-fn sample(fabric: &dyn Fabric) -> Vec<Texel> {
+fn sample(fabric: &dyn Fabric, size: usize) -> Vec<Texel> {
+    let samples = SAMPLES / size;
     let place = |pixel: usize, sample: usize| {
-        (pixel as f32 + (sample as f32 + 0.5) / SAMPLES as f32) / SIZE as f32
+        (pixel as f32 + (sample as f32 + 0.5) / samples as f32) / size as f32
     };
-    let weight = 1.0 / (SAMPLES * SAMPLES) as f32;
+    let weight = 1.0 / (samples * samples) as f32;
     let pixel = |index: usize| {
-        let (column, row) = (index % SIZE, index / SIZE);
+        let (column, row) = (index % size, index / size);
         let mut mean = Texel::default();
-        for sample in 0..SAMPLES * SAMPLES {
+        for sample in 0..samples * samples {
             let texel = fabric.at(
-                place(column, sample % SAMPLES),
-                place(row, sample / SAMPLES),
+                place(column, sample % samples),
+                place(row, sample / samples),
             );
             mean.height += weight * texel.height;
             mean.openness += weight * texel.openness;
@@ -76,7 +81,7 @@ fn sample(fabric: &dyn Fabric) -> Vec<Texel> {
         }
         mean
     };
-    (0..SIZE * SIZE).map(pixel).collect()
+    (0..size * size).map(pixel).collect()
 }
 
 /// sRGB colour, darker in the gaps: they are too small for a renderer's own shadows.
@@ -94,14 +99,14 @@ fn metallic_roughness(texel: &Texel) -> [u8; 3] {
 }
 
 /// Tangent-space normals of the height field, with y up the image (OpenGL's convention).
-fn normals(texels: &[Texel], units: f32) -> impl Iterator<Item = [u8; 3]> {
-    let pixels_per_unit = SIZE as f32 / units;
-    let height = |column: usize, row: usize| texels[row % SIZE * SIZE + column % SIZE].height;
-    (0..SIZE * SIZE).map(move |index| {
-        let (column, row) = (index % SIZE, index / SIZE);
+fn normals(texels: &[Texel], units: f32, size: usize) -> impl Iterator<Item = [u8; 3]> {
+    let pixels_per_unit = size as f32 / units;
+    let height = move |column: usize, row: usize| texels[row % size * size + column % size].height;
+    (0..size * size).map(move |index| {
+        let (column, row) = (index % size, index / size);
         let slope = |ahead: f32, behind: f32| RELIEF * pixels_per_unit * (ahead - behind) / 2.0;
-        let right = slope(height(column + 1, row), height(column + SIZE - 1, row));
-        let down = slope(height(column, row + 1), height(column, row + SIZE - 1));
+        let right = slope(height(column + 1, row), height(column + size - 1, row));
+        let down = slope(height(column, row + 1), height(column, row + size - 1));
         let length = (right * right + down * down + 1.0).sqrt();
         [-right, down, 1.0].map(|axis| coarse(byte(0.5 + 0.5 * axis / length), 4))
     })
@@ -127,6 +132,7 @@ fn coarse(value: u8, step: u8) -> u8 {
 
 fn save<const N: usize>(
     path: &Path,
+    size: usize,
     kind: ExtendedColorType,
     pixels: impl Iterator<Item = [u8; N]>,
 ) -> Result<(), Box<dyn Error>> {
@@ -134,8 +140,8 @@ fn save<const N: usize>(
     let file = BufWriter::new(File::create(path)?);
     PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive).write_image(
         &bytes,
-        SIZE as u32,
-        SIZE as u32,
+        size as u32,
+        size as u32,
         kind,
     )?;
     println!("{}", path.display());

@@ -28,6 +28,20 @@
 //! The simulation is in [`cloth`], a crate of its own that needs no renderer. This crate adds what a game needs on top;
 //! [`ClothPlugins`](plugins::ClothPlugins) lists the parts.
 //!
+//! # Features
+//!
+//! | feature | what it adds | default |
+//! | --- | --- | --- |
+//! | `render` | meshes of cloths, cloths of meshes (`ClothFromMesh`), fabrics' looks: all that needs assets and Bevy's renderer | yes |
+//! | `picking` | pointers hit cloth (`ClothPickingPlugin`), drag and pin it (`ClothDragPlugin`); keys move balls (`SphereControlsPlugin`) | yes |
+//! | `gizmos` | debug drawing (`ClothDebugPlugin`) | yes |
+//! | `diagnostics` | figures for Bevy's `DiagnosticsStore` (`ClothDiagnosticsPlugin`) | yes |
+//! | `motion_vectors` | for temporal antialiasing and motion blur (`ClothMotionVectorsPlugin`) | yes |
+//! | `fabric_textures` | small textures of all fabrics in the program, 1.4 MB | yes |
+//! | `serialize` | serde for what a game saves of its cloths | no |
+//!
+//! A server takes none of them (`default-features = false`), or [`cloth`] alone.
+//!
 //! # Guide
 //!
 //! | page | about |
@@ -47,34 +61,49 @@
 
 pub use tailorbird_cloth as cloth;
 
+#[cfg(feature = "gizmos")]
 pub mod debug;
+#[cfg(feature = "diagnostics")]
 pub mod diagnostics;
+#[cfg(feature = "picking")]
 pub mod drag;
+#[cfg(feature = "render")]
 pub mod fabric;
+#[cfg(feature = "render")]
 pub mod mesh;
+#[cfg(feature = "motion_vectors")]
 pub mod motion_vectors;
+#[cfg(feature = "picking")]
 pub mod picking;
 pub mod plugins;
+#[cfg(feature = "picking")]
 pub mod sphere_controls;
 
 /// What most games name.
 pub mod prelude {
+    #[cfg(feature = "gizmos")]
+    pub use crate::debug::{ClothDebugPlugin, ClothGizmos};
+    #[cfg(feature = "diagnostics")]
+    pub use crate::diagnostics::ClothDiagnosticsPlugin;
+    #[cfg(feature = "motion_vectors")]
+    pub use crate::motion_vectors::ClothMotionVectorsPlugin;
+    pub use crate::plugins::ClothPlugins;
+    #[cfg(feature = "picking")]
     pub use crate::{
-        debug::{ClothDebugPlugin, ClothGizmos},
-        diagnostics::ClothDiagnosticsPlugin,
         drag::{
             ClothDrag, ClothDragPlugin, ClothDragSettings, ClothGrabbed, ClothPinned,
             ClothReleased, ClothUnpinned,
         },
+        picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
+        sphere_controls::{SphereControls, SphereControlsPlugin},
+    };
+    #[cfg(feature = "render")]
+    pub use crate::{
         fabric::{ClothFabricPlugin, ClothLook, Fabric},
         mesh::{
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
-            ClothUnseen, ColorChannel, MeshParts, MeshPins,
+            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins,
         },
-        motion_vectors::ClothMotionVectorsPlugin,
-        picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
-        plugins::ClothPlugins,
-        sphere_controls::{SphereControls, SphereControlsPlugin},
     };
     pub use tailorbird_cloth::prelude::*;
 }

@@ -1,9 +1,8 @@
 //! All plugins in one group.
 
-use bevy_app::{
-    FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, PluginGroup,
-    PluginGroupBuilder,
-};
+#[cfg(feature = "render")]
+use bevy_app::{FixedFirst, FixedLast, FixedPreUpdate, FixedUpdate};
+use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::{intern::Interned, schedule::ScheduleLabel};
 
 use crate::prelude::*;
@@ -37,6 +36,7 @@ impl ClothPlugins {
         }
     }
 
+    #[cfg(feature = "render")]
     fn is_fixed(&self) -> bool {
         [
             FixedFirst.intern(),
@@ -57,18 +57,24 @@ impl Default for ClothPlugins {
 
 impl PluginGroup for ClothPlugins {
     fn build(self) -> PluginGroupBuilder {
+        #[cfg(feature = "render")]
         let interpolate = self.is_fixed();
-        PluginGroupBuilder::start::<Self>()
-            .add(ClothPlugin::new(self.schedule))
+        let group = PluginGroupBuilder::start::<Self>().add(ClothPlugin::new(self.schedule));
+        #[cfg(feature = "render")]
+        let group = group
             .add(ClothMeshPlugin {
                 settings: ClothMeshSettings {
                     interpolate,
                     ..ClothMeshSettings::default()
                 },
             })
-            .add(ClothFabricPlugin::default())
-            .add(ClothPickingPlugin)
-            .add(ClothDiagnosticsPlugin)
-            .add(ClothDebugPlugin)
+            .add(ClothFabricPlugin::default());
+        #[cfg(feature = "picking")]
+        let group = group.add(ClothPickingPlugin);
+        #[cfg(feature = "diagnostics")]
+        let group = group.add(ClothDiagnosticsPlugin);
+        #[cfg(feature = "gizmos")]
+        let group = group.add(ClothDebugPlugin);
+        group
     }
 }

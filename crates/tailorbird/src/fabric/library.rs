@@ -36,7 +36,8 @@ fn kinds(fabric: Fabric) -> [(&'static str, Texels); 3] {
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
 pub struct FabricLibrary {
-    folder: String,
+    /// Where there are textures.
+    folder: Option<String>,
     textures: HashMap<Fabric, Textures>,
     materials: HashMap<Key, AssetId<StandardMaterial>>,
 }
@@ -56,9 +57,9 @@ enum Textures {
 }
 
 impl FabricLibrary {
-    pub(super) fn new(folder: &str) -> Self {
+    pub(super) fn new(folder: Option<String>) -> Self {
         Self {
-            folder: folder.to_owned(),
+            folder,
             textures: HashMap::new(),
             materials: HashMap::new(),
         }
@@ -92,6 +93,8 @@ pub(super) fn dress_cloths(
             .or_else(|| cloth.and_then(Cloth::size))
             .unwrap_or(Vec2::ONE);
         let tiles = size / fabric.tile();
+        let folder = library.folder.as_ref().filter(|_| textured);
+        let textured = folder.is_some();
         let color = dye.to_linear().to_f32_array().map(f32::to_bits);
         let key = (fabric, color, tiles.to_array().map(f32::to_bits), textured);
         let known = library.materials.get(&key);
@@ -100,8 +103,7 @@ pub(super) fn dress_cloths(
             library.materials.retain(|_, id| materials.contains(*id));
             let mut material = fabric.surface(dye, textured);
             material.uv_transform = Affine2::from_scale(tiles);
-            if textured {
-                let folder = &library.folder;
+            if let Some(folder) = folder {
                 let textures = library.textures.entry(fabric).or_insert_with(|| {
                     Textures::Loading(kinds(fabric).map(|(kind, texels)| {
                         let path = format!("{folder}/{}_{kind}.png", fabric.name());

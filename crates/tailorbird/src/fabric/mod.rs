@@ -15,9 +15,12 @@
 //! }
 //! ```
 //!
-//! The textures are in this repository's `assets/textures`; a game takes the files that it needs into its own folder of assets. Where one is
-//! missing the cloth is plain. All cloths of one look share one material.
+//! Small textures (256² texels) come with the feature `fabric_textures`. Those of full size (1024²) are in this repository's
+//! `assets/textures`: a game that shows cloth from near takes the files that it needs into a folder of its own assets, and names that in
+//! [`ClothFabricPlugin::folder`]. Without either the cloth is plain. All cloths of one look share one material.
 
+#[cfg(feature = "fabric_textures")]
+mod embedded;
 mod library;
 mod mipmaps;
 
@@ -199,23 +202,30 @@ impl Default for ClothLook {
 }
 
 /// Makes cloths look like their [`ClothLook`]. Without a renderer it does nothing.
+#[derive(Default)]
 pub struct ClothFabricPlugin {
-    /// The folder with the textures, in that of the assets.
-    pub folder: String,
+    /// The folder with the textures, in that of the game's assets. `None` stands for the small ones that the feature `fabric_textures`
+    /// puts into the program; without that feature, for none.
+    pub folder: Option<String>,
 }
 
-impl Default for ClothFabricPlugin {
-    fn default() -> Self {
+impl ClothFabricPlugin {
+    /// With the textures of this folder, in that of the game's assets.
+    pub fn from_folder(folder: impl Into<String>) -> Self {
         Self {
-            folder: "textures".to_owned(),
+            folder: Some(folder.into()),
         }
     }
 }
 
 impl Plugin for ClothFabricPlugin {
     fn build(&self, app: &mut App) {
+        #[cfg(feature = "fabric_textures")]
+        let folder = self.folder.clone().or_else(|| embedded::add(app));
+        #[cfg(not(feature = "fabric_textures"))]
+        let folder = self.folder.clone();
         app.register_type::<ClothLook>()
-            .insert_resource(FabricLibrary::new(&self.folder))
+            .insert_resource(FabricLibrary::new(folder))
             .add_systems(
                 PostUpdate,
                 (dress_cloths, load_textures)

@@ -2,6 +2,7 @@
 
 mod build;
 mod changes;
+mod collider;
 mod follow;
 mod from_mesh;
 pub mod garments;
@@ -9,6 +10,7 @@ mod packed;
 mod parts;
 mod pins;
 mod plain;
+mod previous;
 pub mod rendering;
 mod slab;
 mod sorting;
@@ -16,11 +18,14 @@ mod tangents;
 mod vertices;
 mod write;
 
+#[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
+pub use collider::ColliderFromMesh;
 pub use from_mesh::ClothFromMesh;
 pub use parts::MeshParts;
 pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
+pub use previous::ATTRIBUTE_PREVIOUS_POSITION;
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};
@@ -31,8 +36,6 @@ use bevy_mesh::Mesh;
 use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
-
-use crate::motion_vectors::add_previous_positions;
 
 /// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
 /// entities have the same mesh. The cloths are simulated all the same, but where
@@ -69,8 +72,8 @@ pub struct ClothMeshSettings {
     /// What happens to meshes that no camera and no light with shadows sees.
     pub unseen: ClothUnseen,
     /// Whether vertices carry their place in the frame before, as
-    /// [`ATTRIBUTE_PREVIOUS_POSITION`](crate::motion_vectors::ATTRIBUTE_PREVIOUS_POSITION).
-    /// [`ClothMotionVectorsPlugin`](crate::motion_vectors::ClothMotionVectorsPlugin) sets it.
+    /// [`ATTRIBUTE_PREVIOUS_POSITION`].
+    /// `ClothMotionVectorsPlugin` sets it.
     pub motion_vectors: bool,
 }
 
@@ -125,7 +128,7 @@ impl Plugin for ClothMeshPlugin {
                 (
                     (
                         build::build_cloth_mesh,
-                        add_previous_positions,
+                        previous::add_previous_positions,
                         write::watch_meshes,
                         write::bound_cloth_meshes,
                         build::make_materials_two_sided

@@ -2,7 +2,7 @@
 
 use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 
-use crate::motion_vectors::ATTRIBUTE_PREVIOUS_POSITION;
+use super::ATTRIBUTE_PREVIOUS_POSITION;
 
 /// Numbers of a position and of a normal, and of a tangent.
 const VECTOR: usize = 3;

@@ -96,11 +96,13 @@ impl MeshPins {
         matches!(self, Self::Color { .. } | Self::Attribute { .. })
     }
 
-    /// The attribute that is paint: numbers that mean pins and weights, not colours.
+    /// The attribute that would be drawn though its numbers mean pins and weights, not colours.
     pub(super) fn paint(&self) -> Option<MeshVertexAttribute> {
         match self {
             Self::Color { .. } => Some(Mesh::ATTRIBUTE_COLOR),
-            Self::Attribute { attribute, .. } => Some(*attribute),
+            Self::Attribute { attribute, .. } if attribute.id == Mesh::ATTRIBUTE_COLOR.id => {
+                Some(Mesh::ATTRIBUTE_COLOR)
+            }
             _ => None,
         }
     }

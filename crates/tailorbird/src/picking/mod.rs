@@ -3,6 +3,7 @@
 //! Two backends find what is under a pointer, and both say it the same way: `bevy_picking`'s `PointerHits`, with a
 //! [`ClothPointerHit`] as the extra data of each hit. So observers of `PointerPress` and the like work on a cloth as on any mesh.
 
+#[cfg(feature = "render")]
 mod depth;
 mod ray;
 
@@ -31,7 +32,7 @@ pub enum ClothPickingBackend {
     /// alone: what hides it from the camera hides it from the pointer only if it is pickable itself.
     #[default]
     Ray,
-    /// The depth that the camera sees under the pointer, and the particle nearest to that point. Everything that the camera
+    /// Needs the feature `render`, without which it finds nothing. The depth that the camera sees under the pointer, and the particle nearest to that point. Everything that the camera
     /// draws in its depth prepass hides cloth behind it. The answer comes a few frames late. Works on cameras with
     /// a `DepthPrepass`. Transparent materials are not in it, so such cloth is not found; and a touch that presses as it
     /// lands has no answer yet, so it does not grab.
@@ -62,9 +63,10 @@ pub struct ClothPointerHit {
 
 impl Plugin for ClothPickingPlugin {
     fn build(&self, app: &mut App) {
+        #[cfg(feature = "render")]
+        app.add_plugins(depth::ClothDepthPickingPlugin);
         app.register_type::<ClothPickingSettings>()
             .init_resource::<ClothPickingSettings>()
-            .add_plugins(depth::ClothDepthPickingPlugin)
             .add_systems(
                 PreUpdate,
                 ray::update_hits.in_set(PickingSystems::Backend).run_if(
