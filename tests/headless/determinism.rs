@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use bevy::{
+    ecs::schedule::Schedules,
     prelude::*,
     tasks::{ComputeTaskPool, TaskPoolBuilder},
 };
@@ -15,7 +16,11 @@ const THREADS: &str = "TAILORBIRD_TEST_THREADS";
 
 /// Eight cloths, more particles in all than are simulated on one thread.
 fn crowd() -> u64 {
-    let mut sim = Sim::new().with_passes(2, 2);
+    crowd_in(Sim::new())
+}
+
+fn crowd_in(sim: Sim) -> u64 {
+    let mut sim = sim.with_passes(2, 2);
     let mut wind = Wind::steady(Vec3::new(1.0, 0.0, 5.0));
     wind.gusts.strength = 0.4;
     sim.app.insert_resource(wind);
@@ -81,4 +86,23 @@ fn the_number_of_threads_does_not_matter() {
 #[test]
 fn two_runs_give_the_same_bits() {
     assert_eq!(crowd(), crowd());
+}
+
+/// A different order of systems in each, within what they ask for.
+#[test]
+fn the_order_of_systems_that_ask_for_none_does_not_matter() {
+    let bits = crowd();
+    for seed in 0..10 {
+        let mut sim = Sim::new();
+        let mut schedules = sim.app.world_mut().resource_mut::<Schedules>();
+        let mut shuffled = 0;
+        for (_, schedule) in schedules.iter_mut() {
+            let mut settings = schedule.get_build_settings();
+            settings.shuffle_seed = Some(seed);
+            schedule.set_build_settings(settings);
+            shuffled += 1;
+        }
+        assert!(shuffled > 5, "{shuffled}");
+        assert_eq!(crowd_in(sim), bits, "seed {seed}");
+    }
 }

@@ -266,3 +266,38 @@ fn the_hand_holds_at_few_frames_per_second() {
         assert!(away < 0.04, "{n}: {away}");
     }
 }
+
+/// A shooter: its mouse buttons fire, its arrow keys and its P mean what it says.
+#[test]
+fn a_game_that_does_not_ask_for_it_lets_nobody_drag_pin_or_move() {
+    let mut app = without_hands();
+    app.finish();
+    app.cleanup();
+    let camera = camera(&mut app, 4.0, None, 0);
+    let cloth = curtain(&mut app, N);
+    let ball = (
+        ClothCollider::sphere(0.1),
+        SphereControls::default(),
+        Transform::from_xyz(0.0, 0.0, -2.0),
+    );
+    let ball = app.world_mut().spawn(ball).id();
+    frames(&mut app, 3);
+    let place = particle(&app, cloth, MIDDLE);
+    let place = on_screen(&app, camera, place);
+    point(&mut app, place);
+    frames(&mut app, 2);
+    button(&mut app, MouseButton::Left, ButtonState::Pressed);
+    let (pins, at) = (
+        get::<ClothPins>(&app, cloth).clone(),
+        *get::<Transform>(&app, ball),
+    );
+    frames(&mut app, 2);
+    for key_code in [KeyCode::KeyP, KeyCode::ArrowLeft] {
+        key(&mut app, key_code, ButtonState::Pressed);
+        frames(&mut app, 5);
+    }
+    assert!(app.world().get::<ClothDrag>(cloth).is_none());
+    assert_eq!(get::<ClothGrab>(&app, cloth).particle(), None);
+    assert_eq!(get::<ClothPins>(&app, cloth), &pins);
+    assert_eq!(get::<Transform>(&app, ball), &at);
+}

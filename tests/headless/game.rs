@@ -36,6 +36,13 @@ pub fn game() -> App {
 
 /// The same, before its plugins are finished: more can be added.
 pub fn unfinished() -> App {
+    let mut app = without_hands();
+    app.add_plugins((ClothDragPlugin, SphereControlsPlugin));
+    app
+}
+
+/// The same as a game that asks for cloth alone.
+pub fn without_hands() -> App {
     let mut app = App::new();
     app.add_plugins(
         DefaultPlugins
@@ -65,8 +72,6 @@ pub fn unfinished() -> App {
     .add_plugins((
         bevy::extract::sync_world::SyncWorldPlugin::<bevy::render::RenderApp>::default(),
         ClothPlugins::default().set(ClothFabricPlugin::from_folder("textures")),
-        ClothDragPlugin,
-        SphereControlsPlugin,
     ))
     .insert_resource(Time::<Fixed>::from_hz(HERTZ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / HERTZ)));

@@ -335,3 +335,64 @@ fn two_garments_of_one_file_share_nothing_that_moves() {
     let id = get::<WorldAssetRoot>(&app, held).0.id();
     assert!(matches!(server.load_state(id), LoadState::Loaded));
 }
+
+/// The file is read again, as Bevy's file watcher asks for when it changes on disk: the scene is spawned anew.
+#[test]
+fn a_garment_whose_file_is_read_again_is_made_again() {
+    let mut app = game();
+    let skirt = skirt(
+        &mut app,
+        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+    );
+    frames(&mut app, 60);
+    let before: Vec<Entity> = parts(&app, skirt).iter().map(|part| part.0).collect();
+    let pins = pinned(&app, skirt);
+    app.world()
+        .resource::<AssetServer>()
+        .reload("garments/skirt.gltf");
+    wait(&mut app, |app| {
+        let parts = parts(app, skirt);
+        let whole = parts
+            .iter()
+            .all(|part| app.world().get::<Mesh3d>(part.0).is_some());
+        whole && parts.iter().all(|part| !before.contains(&part.0))
+    });
+    frames(&mut app, 10);
+    assert_eq!(get::<ClothStatus>(&app, skirt), &ClothStatus::default());
+    assert_eq!(get::<ClothParticles>(&app, skirt).len(), ROWS * AROUND);
+    assert_eq!(pinned(&app, skirt), pins);
+    assert_eq!(get::<ClothMaterial>(&app, skirt), &ClothMaterial::cotton());
+    for (part, _) in parts(&app, skirt) {
+        assert!(
+            positions(mesh_of(&app, part))
+                .iter()
+                .any(|p| *p != Vec3::ZERO)
+        );
+    }
+}
+
+/// Another scene on the same entity.
+#[test]
+fn a_garment_of_another_scene_takes_the_place_of_the_first() {
+    let mut app = game();
+    let skirt = skirt(&mut app, ClothFromMesh::default());
+    let before: Vec<Entity> = parts(&app, skirt).iter().map(|part| part.0).collect();
+    let mut world = World::new();
+    let mesh = source(&app, 0).clone();
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh);
+    world.spawn((Mesh3d(mesh), Transform::default(), Visibility::default()));
+    let other = bevy::world_serialization::WorldAsset::new(world);
+    let other = app
+        .world_mut()
+        .resource_mut::<Assets<bevy::world_serialization::WorldAsset>>()
+        .add(other);
+    app.world_mut()
+        .entity_mut(skirt)
+        .insert(WorldAssetRoot(other));
+    wait(&mut app, |app| {
+        let parts = parts(app, skirt);
+        parts.len() == 1 && !before.contains(&parts[0].0)
+    });
+    assert_eq!(get::<ClothStatus>(&app, skirt), &ClothStatus::default());
+    assert!(get::<ClothParticles>(&app, skirt).len() < ROWS * AROUND);
+}

@@ -27,6 +27,7 @@ mod lifecycle;
 mod mesh;
 mod mesh_cloth;
 mod mesh_parts;
+mod mesh_sources;
 mod momentum;
 mod moving_frame;
 mod panel;

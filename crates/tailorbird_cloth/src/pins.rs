@@ -1,4 +1,6 @@
 //! Particles that are held in the cloth's frame.
+//!
+#![doc = include_str!("pins.md")]
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};

@@ -127,13 +127,10 @@ pub(super) fn cloth_from_mesh(
         if is_cloth && source.is_none() || !asked && !pending.contains(&entity) {
             continue;
         }
-        let mut errors = Vec::new();
+        let (mut errors, mut waiting) = (Vec::new(), false);
         match make(entity, &from_mesh, &finder, &mut errors) {
-            Ok(None) => {
-                // What is still being loaded is waited for; meanwhile the cloth stays what it was.
-                pending.insert(entity);
-                continue;
-            }
+            // What is still being loaded is waited for; meanwhile the cloth stays what it was.
+            Ok(None) => waiting = true,
             Ok(Some(made))
                 if asked || source.is_none_or(|old| !old.has_same_parts(&made.source)) =>
             {
@@ -157,7 +154,11 @@ pub(super) fn cloth_from_mesh(
             Ok(Some(_)) => {}
             Err(error) => errors.push(error),
         }
-        pending.remove(&entity);
+        if waiting {
+            pending.insert(entity);
+        } else {
+            pending.remove(&entity);
+        }
         ClothStatus::update(
             &mut status,
             entity,

@@ -1,4 +1,6 @@
 //! What a user can get wrong, as typed errors that name the entity, the field, the value and what is allowed.
+//!
+#![doc = include_str!("README.md")]
 
 mod status;
 

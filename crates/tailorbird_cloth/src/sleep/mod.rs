@@ -1,4 +1,6 @@
 //! Cloth at rest settles and then sleeps: it costs nothing until something happens to it.
+//!
+#![doc = include_str!("README.md")]
 
 mod stillness;
 mod unseen;
