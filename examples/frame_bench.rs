@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-use bevy::platform::time::Instant;
+use tailorbird::cloth::wall_clock::WallClock;
 
 use bevy::{
     app::{AppLabel, PluginsState, TerminalCtrlCHandlerPlugin},
@@ -116,13 +116,13 @@ struct Record {
 /// Time in the frame's systems.
 #[derive(Resource, Default)]
 struct Clock {
-    start: Option<Instant>,
+    start: Option<WallClock>,
     simulate: Duration,
     write: Duration,
 }
 
 fn start(mut clock: ResMut<Clock>) {
-    clock.start = Some(Instant::now());
+    clock.start = Some(WallClock::start());
 }
 
 fn simulated(mut clock: ResMut<Clock>) {
@@ -225,10 +225,10 @@ fn app([count, size]: [u32; 2], away: bool) -> App {
 fn frame(app: &mut App) -> Frame {
     *app.world_mut().resource_mut::<Clock>() = Clock::default();
     let ms = |time: Duration| time.as_secs_f64() * 1e3;
-    let begin = Instant::now();
+    let begin = WallClock::start();
     app.main_mut().run_default_schedule();
     let main = begin.elapsed();
-    let begin = Instant::now();
+    let begin = WallClock::start();
     let all = app.sub_apps_mut();
     let mut extract = Duration::ZERO;
     if let Some(render) = all.sub_apps.get_mut(&RenderApp.intern()) {

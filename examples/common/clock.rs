@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bevy::platform::time::Instant;
+use tailorbird::cloth::wall_clock::WallClock;
 
 use bevy::prelude::*;
 use tailorbird::{mesh::ClothMeshSystems, prelude::*};
@@ -13,7 +13,7 @@ pub struct StageClockPlugin;
 /// How long the stages took last.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct StageTimes {
-    start: Option<Instant>,
+    start: Option<WallClock>,
     mesh: Duration,
 }
 
@@ -40,7 +40,7 @@ impl Plugin for StageClockPlugin {
 }
 
 fn start(mut times: ResMut<StageTimes>) {
-    times.start = Some(Instant::now());
+    times.start = Some(WallClock::start());
 }
 
 fn stop(mut times: ResMut<StageTimes>) {

@@ -137,3 +137,48 @@ fn transparent_cloths_are_sorted_by_where_they_are() {
     let (r, g) = middle(&mut app, "green_in_front");
     assert!(g > 2 * r, "green is in front: {r} {g}");
 }
+
+/// What an entity looks like in a mirror, its material is lit as it is.
+#[test]
+fn mirrored_cloths_are_lit_as_others() {
+    for shading in [ClothShading::Smooth, ClothShading::Flat] {
+        let lit = |scale: Vec3, name: &str| {
+            let mut app = Offscreen::new("a mirrored cloth", SIZE)?;
+            app.app.insert_resource(ClothSettings {
+                gravity: Vec3::ZERO,
+                ..default()
+            });
+            let cloth = Cloth::grid(Vec2::splat(2.0), UVec2::splat(9)).centered();
+            let white = material(&mut app, StandardMaterial::default());
+            let place = Transform::from_scale(scale);
+            app.app.world_mut().spawn((cloth, shading, white, place));
+            let aside = Transform::from_xyz(1.0, 2.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y);
+            app.app
+                .world_mut()
+                .spawn((DirectionalLight::default(), aside));
+            camera(&mut app, Vec3::Z * 4.0, Vec3::ZERO);
+            app.update(3);
+            let picture = app.picture();
+            keep(&picture, &format!("light_mirrored_{name}"));
+            Some(light(&picture, SIZE / 2))
+        };
+        let Some(as_it_is) = lit(Vec3::ONE, "not") else {
+            return;
+        };
+        assert!(as_it_is > 150, "{as_it_is}");
+        for (name, scale) in [
+            ("x", Vec3::new(-1.0, 1.0, 1.0)),
+            ("y", Vec3::new(1.0, -1.0, 1.0)),
+            ("z", Vec3::new(1.0, 1.0, -1.0)),
+            ("xy", Vec3::new(-1.0, -1.0, 1.0)),
+            ("all", Vec3::NEG_ONE),
+            ("uneven", Vec3::new(-1.5, 1.0, 2.0)),
+        ] {
+            let mirrored = lit(scale, name).unwrap_or_default();
+            assert!(
+                mirrored.abs_diff(as_it_is) <= 6,
+                "{name}, {shading:?}: {mirrored}, without a mirror {as_it_is}"
+            );
+        }
+    }
+}

@@ -29,6 +29,9 @@ use crate::{
 /// Change it at run time and the cloth is rebuilt; a grid that stays a grid keeps the shape it has.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 #[require(
     ClothMaterial,
     ClothPins,
@@ -57,6 +60,9 @@ pub struct Cloth {
 
 /// The rest shape of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub enum ClothShape {
     /// A rectangle in the x-y plane that faces +z. Columns run along +x, rows along −y: row 0 is the top.
@@ -67,6 +73,7 @@ pub enum ClothShape {
         resolution: UVec2,
         /// Which point of the rectangle lies at the entity's origin, as fractions of the width from the left and of
         /// the height from the top. (0, 0), the default, is the top left corner: particle (0, 0).
+        #[cfg_attr(feature = "serialize", serde(default))]
         origin: Vec2,
     },
     /// Triangles.
@@ -77,8 +84,15 @@ pub enum ClothShape {
         indices: Vec<u32>,
         /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
         /// hold together.
+        #[cfg_attr(feature = "serialize", serde(default = "weld_distance"))]
         weld_distance: f32,
     },
+}
+
+/// Of a file that does not say.
+#[cfg(feature = "serialize")]
+fn weld_distance() -> f32 {
+    Cloth::WELD_DISTANCE
 }
 
 impl Cloth {

@@ -2,13 +2,11 @@
 
 use std::time::Duration;
 
-use bevy_platform::time::Instant;
-
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-use crate::{particles::ClothParticles, topology::Topology};
+use crate::{particles::ClothParticles, topology::Topology, wall_clock::WallClock};
 
 /// How long the last step took. Written by the cloth systems alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
@@ -21,12 +19,12 @@ pub struct ClothStepTime {
     /// `Writeback`.
     pub total: Duration,
     #[reflect(ignore)]
-    pub(crate) start: Option<Instant>,
+    pub(crate) start: Option<WallClock>,
 }
 
 /// Starts the clock of the step.
 pub(crate) fn start_clock(mut time: ResMut<ClothStepTime>) {
-    time.start = Some(Instant::now());
+    time.start = Some(WallClock::start());
 }
 
 /// Stops the clock of the step.

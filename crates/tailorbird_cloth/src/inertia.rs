@@ -59,6 +59,9 @@ use crate::{
 /// entity stood still.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothInertia {
     /// Part of the entity's way that is felt, 0 to 1 [-]. 0 is a cloth that does not notice that its entity moves.
     pub linear: f32,
@@ -68,12 +71,28 @@ pub struct ClothInertia {
     /// rises in a turn that carries it along. At least 0; 1 is physics.
     pub centrifugal: f32,
     /// What the entity moves faster than this [m/s] is not felt.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
     pub max_speed: f32,
     /// What the entity turns faster than this [rad/s] is not felt.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
     pub max_angular_speed: f32,
     /// An entity that moves faster than this [m/s] within one step is taken to be put elsewhere.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
     pub teleport_speed: f32,
     /// An entity that turns by more than this in one step \[rad\] is taken to be put elsewhere. No turn is larger than π.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
     pub teleport_angle: f32,
     /// What happens to the cloth where it is.
     pub teleport: TeleportMode,
@@ -82,6 +101,8 @@ pub struct ClothInertia {
 /// What becomes of a cloth whose entity is put elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum TeleportMode {
     /// It is carried along as it is, and what velocity it has turns with it.
     #[default]

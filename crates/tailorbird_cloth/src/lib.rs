@@ -20,6 +20,32 @@
 //!
 //! The crate `tailorbird` adds what a game needs on top: the mesh, picking, dragging, debug drawing.
 //!
+//! # Features
+//!
+//! | feature | by default | what for |
+//! | --- | --- | --- |
+//! | `serialize` | no | saving: serde's `Serialize` and `Deserialize`, also for reflection, so that Bevy's worlds in files have them |
+//!
+//! # What is saved
+//!
+//! With the feature `serialize`, all that a game sets:
+//!
+//! - of a cloth: its shape, material, pins, painted weights, shading, solver, inertia and sleep settings, motion constraints and
+//!   targets;
+//! - colliders of all shapes, and layers;
+//! - attachments, with what they belong to and what holds them: [`AttachmentOf`](attachment::AttachmentOf) and
+//!   [`AttachedTo`](attachment::AttachedTo), which name entities and are mapped when a world is read;
+//! - zones of wind, and the resources [`ClothSettings`](settings::ClothSettings) and [`Wind`](wind::Wind).
+//!
+//! Not what the simulation makes of it: particles, velocities, normals, sleep, [`ClothStatus`](error::ClothStatus). A cloth that
+//! is read is built anew and starts at rest. Nor what lasts for a moment: [`ClothForces`](forces::ClothForces), which act for a step,
+//! and [`ClothGrab`](grab::ClothGrab).
+//!
+//! A field that a file leaves out has its default, one that does not exist is an error. Colliders are checked as their constructors
+//! check them, and what is wrong is an error of the file, with the text of [`ClothErrorKind`](error::ClothErrorKind); a convex hull
+//! is computed again from its corners. Other values are checked where they are used, as those that a game sets: see
+//! [`ClothStatus`](error::ClothStatus). JSON has no infinity and writes `null`, which is read as "no limit" where there need be none.
+//!
 //! Units are metres, kilograms and seconds. World axes are Bevy's: right-handed, y up.
 
 pub mod attachment;
@@ -56,8 +82,11 @@ pub mod stages;
 pub mod step;
 pub mod tethers;
 pub mod topology;
+#[cfg(feature = "serialize")]
+mod unbounded;
 pub mod validate;
 pub mod vertices;
+pub mod wall_clock;
 pub mod weights;
 pub mod wind;
 

@@ -96,6 +96,9 @@ const MOMME: f32 = 0.004_34;
 /// | rubber | 1500, 1500 | 500 | 1.7e-4 | shear modulus 0.5 MPa of vulcanised natural rubber, E = 3 G, B = E t³/9 |
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothMaterial {
     /// Mass per area [kg/m²].
     pub areal_density: f32,

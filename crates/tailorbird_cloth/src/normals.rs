@@ -18,6 +18,8 @@ use crate::{
 /// Which normals a cloth is shaded with.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum ClothShading {
     /// One for each particle: the mean of its triangles, weighted by area.
     #[default]

@@ -18,6 +18,9 @@ use crate::{
 /// The particles that are held: they move with the entity and with nothing else. Change it at any time.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothPins {
     /// The pins. Where two name the same particle, the later one counts.
     pub pins: Vec<ClothPin>,
@@ -25,18 +28,26 @@ pub struct ClothPins {
 
 /// One pin, of one particle or several.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 pub struct ClothPin {
     /// What it holds.
     pub selection: PinSelection,
     /// Where it holds it, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new
     /// cloth). The particles move there within one step, evenly over the substeps.
+    #[cfg_attr(feature = "serialize", serde(default))]
     pub target: Option<Vec3>,
     /// Who made it.
+    #[cfg_attr(feature = "serialize", serde(default))]
     pub author: PinAuthor,
 }
 
 /// Which particles a pin holds.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub enum PinSelection {
     /// The particle with this index.
@@ -60,6 +71,8 @@ pub enum PinSelection {
 
 /// A corner of a grid, seen from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum GridCorner {
     /// Row 0, column 0.
     TopLeft,
@@ -85,6 +98,8 @@ impl GridCorner {
 
 /// An edge of a grid, seen from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum GridEdge {
     /// Row 0.
     Top,
@@ -98,6 +113,8 @@ pub enum GridEdge {
 
 /// Who made a pin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum PinAuthor {
     /// The game.
     #[default]

@@ -4,8 +4,6 @@
 //! can go through all of them while it is in the cache. Many small cloths are shared out to threads; a large one has all
 //! threads to itself.
 
-use bevy_platform::time::Instant;
-
 use bevy_ecs::{
     prelude::*,
     schedule::{NodeId, SystemKey},
@@ -19,6 +17,7 @@ use crate::{
     schedule::ClothSubstep,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
+    wall_clock::WallClock,
     wind::BlowingWind,
 };
 
@@ -67,7 +66,7 @@ pub(crate) fn simulate_cloths(
     mut cloths: Query<ClothStages, With<Cloth>>,
     commands: ParallelCommands,
 ) {
-    let start = Instant::now();
+    let start = WallClock::start();
     let simulate = |cloth: &mut ClothStagesItem, crew: Crew| {
         cloth.particles.begin_step();
         wind.blow(&step, crew, cloth);

@@ -1,10 +1,8 @@
 //! Sets, and the schedule that runs once per substep.
 
-use bevy_platform::time::Instant;
-
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 
-use crate::{diagnostics::ClothStepTime, step::ClothStep};
+use crate::{diagnostics::ClothStepTime, step::ClothStep, wall_clock::WallClock};
 
 /// The parts of a step, in order, in the schedule that was given to [`ClothPlugin::new`](crate::plugin::ClothPlugin::new).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,7 +52,7 @@ pub enum ClothSubstepSystems {
 /// Runs [`ClothSubstep`] as often as the step has substeps, and measures it.
 pub fn run_substeps(world: &mut World) {
     let substeps = world.resource::<ClothStep>().substeps;
-    let start = Instant::now();
+    let start = WallClock::start();
     for substep in 0..substeps {
         world.resource_mut::<ClothStep>().substep = substep;
         world.run_schedule(ClothSubstep);

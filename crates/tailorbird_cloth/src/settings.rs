@@ -51,6 +51,9 @@ use crate::error::ClothErrorKind;
 /// What holds for all cloths. Insert or change it at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothSettings {
     /// Acceleration of every particle [m/s²].
     pub gravity: Vec3,
@@ -78,6 +81,8 @@ pub struct ClothSettings {
 /// The instructions that the kernels use. What the machine does not have is replaced by the best that it has below.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum InstructionSet {
     /// The best of this machine.
     #[default]

@@ -9,6 +9,9 @@ use bevy_reflect::prelude::*;
 /// particle counts. It holds nothing by itself: [`ClothPins::painted`](crate::pins::ClothPins::painted) makes pins of it.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothWeights {
     /// The weights [-], one for each particle.
     pub weights: Vec<f32>,

@@ -7,7 +7,7 @@ use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
-    cloth::Cloth,
+    cloth::{Cloth, ClothShape},
     drawn::ClothDrawnHolds,
     normals::{ClothNormals, ClothShading},
     topology::ClothTopology,
@@ -24,6 +24,8 @@ use super::{
 pub struct ClothMesh {
     /// Of the topology it was built from.
     pub(super) revision: u64,
+    /// Of the meshes that it was built from; 0 where it was not.
+    made: u64,
     pub(super) shading: ClothShading,
     pub(crate) parts: Vec<ClothMeshPart>,
 }
@@ -124,13 +126,22 @@ pub(super) fn build_cloth_mesh(
             // The cloth itself has lost it; a part that is gone stays away.
             Err(_) => part.entity != entity,
         };
+        let made = source.map_or(0, |source| source.made);
         let current = built.is_some_and(|built| {
             built.revision == topology.revision
+                && built.made == made
                 && built.shading == *shading
                 && built.parts.iter().all(shows)
         });
+        // The shape may be newer than what was built of it.
+        let matches = match &cloth.shape {
+            ClothShape::Mesh { positions, .. } => {
+                topology.particles_of_vertices().len() == positions.len()
+            }
+            _ => topology.grid.is_some(),
+        };
         // A mesh that could not be written yet would be nowhere for a while.
-        if current || topology.revision == 0 || normals.shading() != *shading {
+        if current || !matches || topology.revision == 0 || normals.shading() != *shading {
             continue;
         }
         let of_meshes = source.and_then(|source| {
@@ -174,6 +185,7 @@ pub(super) fn build_cloth_mesh(
         }
         commands.entity(entity).insert(ClothMesh {
             revision: topology.revision,
+            made,
             shading: *shading,
             parts,
         });

@@ -87,6 +87,8 @@ impl ClothFromMesh {
 #[derive(Component, Clone, Debug)]
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
+    /// How many cloths had been made when this one was: it tells this one from those of the same shape.
+    pub made: u64,
     /// Their attributes that are not drawn.
     pub left_out: Option<MeshVertexAttribute>,
     /// The pin that they name.
@@ -109,6 +111,7 @@ pub(super) fn cloth_from_mesh(
     )>,
     mut changes: Changes,
     mut pending: Local<HashSet<Entity>>,
+    mut count: Local<u64>,
     finder: Finder,
     parts: Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
     skins: Query<&SkinnedMesh>,
@@ -131,9 +134,11 @@ pub(super) fn cloth_from_mesh(
         match make(entity, &from_mesh, &finder, &mut errors) {
             // What is still being loaded is waited for; meanwhile the cloth stays what it was.
             Ok(None) => waiting = true,
-            Ok(Some(made))
+            Ok(Some(mut made))
                 if asked || source.is_none_or(|old| !old.has_same_parts(&made.source)) =>
             {
+                *count += 1;
+                made.source.made = *count;
                 let mut pins = pins.cloned().unwrap_or_default();
                 if let Some(old) = source {
                     pins.pins.retain(|pin| Some(pin) != old.pin.as_ref());
@@ -260,6 +265,7 @@ fn make(
         cloth: Cloth { shape },
         source: ClothMeshSource {
             parts,
+            made: 0,
             left_out: from_mesh.pins.paint().filter(|_| !from_mesh.draw_paint),
             pin,
         },

@@ -5,7 +5,7 @@ use std::{
     time::Duration,
 };
 
-use bevy_platform::time::Instant;
+use tailorbird_cloth::wall_clock::WallClock;
 
 use bevy_app::{App, FixedPostUpdate, TaskPoolPlugin};
 use bevy_ecs::prelude::*;
@@ -34,7 +34,7 @@ pub struct Record {
 /// Time that the stages of substeps took.
 #[derive(Resource, Default)]
 struct Clock {
-    start: Option<Instant>,
+    start: Option<WallClock>,
     collide: Duration,
     others: Duration,
     substeps: u32,
@@ -42,9 +42,8 @@ struct Clock {
 
 impl Clock {
     fn lap(&mut self) -> Duration {
-        let now = Instant::now();
-        let lap = self.start.map_or(Duration::ZERO, |start| now - start);
-        self.start = Some(now);
+        let lap = self.start.map_or(Duration::ZERO, |start| start.elapsed());
+        self.start = Some(WallClock::start());
         lap
     }
 }

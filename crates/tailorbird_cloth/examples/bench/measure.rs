@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, time::Duration};
 
-use bevy_platform::time::Instant;
+use tailorbird_cloth::wall_clock::WallClock;
 
 use bevy_math::Vec3;
 use tailorbird_cloth::{prelude::*, tethers::ClothTethers, topology::Topology};
@@ -87,7 +87,7 @@ pub fn measure(setup: &Setup, args: &Args) -> Record {
 /// How long it takes to build the topology [ms].
 fn topology_ms(cloth: &Cloth) -> f64 {
     let times = (0..BUILDS).map(|_| {
-        let start = Instant::now();
+        let start = WallClock::start();
         std::hint::black_box(Topology::build(&cloth.shape, Vec3::ONE).is_ok());
         start.elapsed()
     });

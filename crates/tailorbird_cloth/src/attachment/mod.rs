@@ -78,6 +78,9 @@ use crate::{
 /// stay in force.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 #[require(AttachmentState, AttachmentForce, ClothStatus)]
 pub struct ClothAttachment {
     /// What is held. A selection that is wrong is reported and left out.
@@ -92,6 +95,8 @@ pub struct ClothAttachment {
 
 /// Where an attachment holds its particles.
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
 pub enum AttachmentOffset {
     /// Where they are, relative to the entity, when they are attached (at rest, for a new cloth).
@@ -105,6 +110,8 @@ pub enum AttachmentOffset {
 /// The cloth that an attachment belongs to.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[relationship(relationship_target = ClothAttachments)]
 pub struct AttachmentOf(pub Entity);
 
@@ -117,6 +124,8 @@ pub struct ClothAttachments(Vec<Entity>);
 /// The entity that holds an attachment. It needs a `Transform`; its parents and its scale count.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[relationship(relationship_target = Attachments)]
 pub struct AttachedTo(pub Entity);
 

@@ -11,6 +11,7 @@ use crate::error::ClothErrorKind;
 /// shares them.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct HeightField {
     heights: Arc<[f32]>,
     resolution: UVec2,

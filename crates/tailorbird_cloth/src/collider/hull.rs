@@ -11,6 +11,7 @@ use crate::error::ClothErrorKind;
 /// The convex hull of points. A clone shares them.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct ConvexHull {
     data: Arc<HullData>,
 }

@@ -13,6 +13,7 @@ use crate::error::ClothErrorKind;
 /// Any other is a sheet, which keeps everything on the side where it is.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct TriMesh {
     data: Arc<MeshData>,
 }

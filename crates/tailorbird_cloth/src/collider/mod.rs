@@ -54,6 +54,8 @@
 
 mod bodies;
 mod coupling;
+#[cfg(feature = "serialize")]
+mod description;
 mod external;
 mod height_field;
 mod hull;
@@ -94,6 +96,7 @@ use crate::error::{ClothErrorKind, ClothStatus};
 /// takes cloth along by friction. [`ClothLayers`] says which cloths, if not all.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[require(Transform, ClothStatus, ColliderPose)]
 pub struct ClothCollider {
     /// Its shape, around the entity's origin.

@@ -10,6 +10,7 @@ use crate::error::ClothErrorKind;
 
 /// The shape of a collider, around its entity's origin. Cloning one is cheap.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
 pub enum ColliderShape {
     /// A ball. Where the entity is scaled, the largest factor counts, as for all round shapes.
@@ -60,6 +61,7 @@ pub enum ColliderShape {
 /// Shapes with their places in a whole. A clone shares them.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct Compound(Arc<[(Isometry3d, ColliderShape)]>);
 
 impl Compound {

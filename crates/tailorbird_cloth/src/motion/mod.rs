@@ -56,11 +56,25 @@ use crate::error::ClothErrorKind;
 
 /// A value for each particle of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum PerParticle {
     /// The same for all.
-    All(f32),
+    All(
+        #[cfg_attr(
+            feature = "serialize",
+            serde(deserialize_with = "crate::unbounded::number")
+        )]
+        f32,
+    ),
     /// One for each, in the order of [`Cloth::rest_positions`](crate::cloth::Cloth::rest_positions).
-    Each(Vec<f32>),
+    Each(
+        #[cfg_attr(
+            feature = "serialize",
+            serde(deserialize_with = "crate::unbounded::list")
+        )]
+        Vec<f32>,
+    ),
 }
 
 impl PerParticle {
@@ -118,6 +132,9 @@ impl From<Vec<f32>> for PerParticle {
 /// constraints stay in force.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 #[require(MotionState)]
 pub struct ClothMotionConstraints {
     /// Furthest from the target \[m\]. Infinity, the default, is free; 0 is held.
@@ -188,6 +205,8 @@ impl ClothMotionConstraints {
 
 /// Which space the targets are given in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum TargetSpace {
     /// The cloth's [`ClothFrame`](crate::frame::ClothFrame): targets move with the entity.
     #[default]
@@ -202,6 +221,9 @@ pub enum TargetSpace {
 /// What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus), and the targets stay where they are.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothMotionTargets {
     space: TargetSpace,
     positions: Vec<Vec3>,

@@ -49,6 +49,9 @@ use unseen::Unseen;
 /// With [`unseen`](Self::unseen) it also sleeps while nobody sees it, whatever happens to it: see there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothSleep {
     /// Whether the cloth falls asleep when it is at rest.
     pub enabled: bool,

@@ -68,6 +68,8 @@ use kernels::verlet::Verlet;
 /// How the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum ClothSolver {
     /// Whole lines of edges at once, exactly; tethers to the pins. Particles at edges that are squeezed to less than 0.7 of their
     /// length at the end of a step get the motion of the whole.

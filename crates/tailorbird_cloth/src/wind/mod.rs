@@ -27,6 +27,9 @@ pub use zone::{WindShape, WindZone};
 /// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct Wind {
     /// Mean velocity of the air [m/s].
     pub velocity: Vec3,
@@ -42,6 +45,9 @@ pub struct Wind {
 
 /// How the wind varies in time. The same at every run: it depends on simulated time alone.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct Gusts {
     /// Largest change of the wind's speed, as a fraction of its mean [-]; 0 is a steady wind.
     pub strength: f32,
@@ -51,6 +57,8 @@ pub struct Gusts {
 
 /// How the wind pushes on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum WindModel {
     /// Drag and lift of a flat plate in the air that flows past it, `½ ρ A |u|² …`, with the coefficients of
     /// [`ClothMaterial`](crate::material::ClothMaterial). Takes the motion of the cloth into account: it cannot get faster than the wind.

@@ -14,6 +14,9 @@ use crate::error::ClothErrorKind;
 ///
 /// It is a sum of plane waves across their own direction (kinematic simulation: Kraichnan 1970, Fung et al. 1992).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct Turbulence {
     /// Root mean square of the speed that it adds [m/s]; 0 is none.
     pub speed: f32,

@@ -31,6 +31,9 @@ use crate::error::{ClothErrorKind, ClothStatus};
 /// One that is wrong is reported in [`ClothStatus`] and blows not.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 #[require(Transform, ClothStatus)]
 pub struct WindZone {
     /// Where it blows.
@@ -47,6 +50,9 @@ pub struct WindZone {
 
 /// Where a [`WindZone`] blows, in the entity's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 pub enum WindShape {
     /// In the whole world.
     #[default]

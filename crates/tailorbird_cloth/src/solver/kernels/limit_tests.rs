@@ -121,7 +121,7 @@ fn one_in_the_middle_of_its_backstop_leaves_along_the_normal() {
 #[ignore = "prints times"]
 fn times_of_limits() {
     use crate::solver::kernels::lanes::levels;
-    use bevy_platform::time::Instant;
+    use crate::wall_clock::WallClock;
     let n = 16_384;
     let targets: Points = (0..n).map(|i| Vec3::new(i as f32, 0.0, 0.0)).collect();
     let normals: Points = (0..n).map(|_| Vec3::Z).collect();
@@ -151,7 +151,7 @@ fn times_of_limits() {
                 place.copy_from(&moved);
                 let position = SharedPoints::new(&mut place);
                 let previous = SharedPoints::new(&mut before);
-                let start = Instant::now();
+                let start = WallClock::start();
                 hold(
                     level,
                     limits,

@@ -160,7 +160,7 @@ mod tests {
                 let passes = 4_000_000 / n;
                 let best = (0..5)
                     .map(|_| {
-                        let start = bevy_platform::time::Instant::now();
+                        let start = crate::wall_clock::WallClock::start();
                         for _ in 0..passes {
                             let shared = SharedPoints::new(&mut normals);
                             smooth_lattice(level, &lattice, &position, shared, 0..size as usize);

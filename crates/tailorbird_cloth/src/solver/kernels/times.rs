@@ -1,6 +1,6 @@
 //! How long the kernels take: for benchmarks.
 
-use bevy_platform::time::Instant;
+use crate::wall_clock::WallClock;
 
 use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
@@ -94,7 +94,7 @@ impl Times {
         let particles = self.particles;
         let passes = VISITS.div_ceil(particles);
         let sample = |_| {
-            let start = Instant::now();
+            let start = WallClock::start();
             for _ in 0..passes {
                 kernel();
             }

@@ -339,7 +339,7 @@ fn time() {
     ]
     .repeat(4)
     {
-        let start = bevy_platform::time::Instant::now();
+        let start = crate::wall_clock::WallClock::start();
         let edges = MeshEdges::new(positions.len(), triangles);
         let edges_at = start.elapsed();
         let weave = Weave::new(positions, triangles, &edges, None);

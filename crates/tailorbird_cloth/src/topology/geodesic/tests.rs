@@ -272,11 +272,11 @@ fn time_of_65536_particles() {
         let positions = sheet.positions(flat);
         let mut least = [f64::INFINITY; 2];
         for _ in 0..10 {
-            let start = bevy_platform::time::Instant::now();
+            let start = crate::wall_clock::WallClock::start();
             let mesh = Geodesics::new(&positions, &sheet.triangles);
-            let built = bevy_platform::time::Instant::now();
+            let built = start.elapsed();
             let found = mesh.distances(&[0]);
-            let times = [built - start, built.elapsed()].map(|t| 1e3 * t.as_secs_f64());
+            let times = [built, start.elapsed() - built].map(|t| 1e3 * t.as_secs_f64());
             least = [least[0].min(times[0]), least[1].min(times[1])];
             assert!(found[65535] > 300.0);
         }

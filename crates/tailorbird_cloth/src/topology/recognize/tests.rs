@@ -178,7 +178,7 @@ fn time() {
     });
     let (positions, triangles) = shuffle(&positions, &triangles, 1);
     for _ in 0..5 {
-        let start = bevy_platform::time::Instant::now();
+        let start = crate::wall_clock::WallClock::start();
         let edges = MeshEdges::new(positions.len(), &triangles);
         let built = start.elapsed();
         let lattice = Recognized::detect(&positions, &triangles, &edges, None);

@@ -1,0 +1,208 @@
+//! Entities through reflection, as Bevy writes worlds and scenes.
+
+use bevy_app::{App, TaskPoolPlugin};
+use bevy_ecs::{
+    entity::EntityHashMap,
+    prelude::*,
+    reflect::{AppTypeRegistry, ReflectComponent},
+    relationship::RelationshipHookMode,
+};
+use bevy_math::{UVec2, Vec2, Vec3};
+use bevy_reflect::{
+    ReflectSerialize,
+    serde::{ReflectDeserializer, ReflectSerializer},
+};
+use bevy_time::{TimePlugin, TimeUpdateStrategy};
+use bevy_transform::components::Transform;
+use serde::de::DeserializeSeed;
+use tailorbird_cloth::prelude::*;
+
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        TaskPoolPlugin::default(),
+        TimePlugin,
+        ClothPlugin::default(),
+    ))
+    .register_type::<Transform>()
+    .insert_resource(TimeUpdateStrategy::ManualDuration(
+        std::time::Duration::from_secs_f64(1.0 / 64.0),
+    ));
+    app
+}
+
+/// Entities, and their components in RON.
+type File = Vec<(Entity, Vec<String>)>;
+
+/// Writes those components that can be saved: with serde, or all that can be reflected.
+fn save(app: &App, entities: &[Entity], all: bool) -> File {
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let of = |entity: Entity| {
+        let components = registry.iter().filter_map(|registration| {
+            if !all {
+                registration.data::<ReflectSerialize>()?;
+            }
+            let component = registration.data::<ReflectComponent>()?;
+            component.reflect(app.world().entity(entity))
+        });
+        components
+            .map(|value| {
+                let value = ReflectSerializer::new(value.as_partial_reflect(), &registry);
+                ron::to_string(&value).unwrap()
+            })
+            .collect()
+    };
+    entities.iter().map(|e| (*e, of(*e))).collect()
+}
+
+/// Reads entities into another world: there they are others.
+fn load(app: &mut App, file: &File) -> Vec<Entity> {
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    let registry = registry.read();
+    let mut others = EntityHashMap::default();
+    for (entity, _) in file {
+        others.insert(*entity, app.world_mut().spawn_empty().id());
+    }
+    for (entity, components) in file {
+        for text in components {
+            let mut ron = ron::Deserializer::from_str(text).unwrap();
+            let value = ReflectDeserializer::new(&registry)
+                .deserialize(&mut ron)
+                .unwrap_or_else(|error| panic!("{error}: {text}"));
+            let id = value.get_represented_type_info().unwrap().type_id();
+            let component = registry.get_type_data::<ReflectComponent>(id).unwrap();
+            component.apply_or_insert_mapped(
+                &mut app.world_mut().entity_mut(others[entity]),
+                &*value,
+                &registry,
+                &mut others.clone(),
+                RelationshipHookMode::Run,
+            );
+        }
+    }
+    file.iter().map(|(entity, _)| others[entity]).collect()
+}
+
+#[test]
+fn what_a_game_sets_comes_back() {
+    a_world_comes_back(false);
+}
+
+/// A game that does not choose saves what the simulation makes as well, which is then made anew.
+#[test]
+fn all_that_is_reflected_comes_back() {
+    a_world_comes_back(true);
+}
+
+fn a_world_comes_back(all: bool) {
+    let mut before = app();
+    let world = before.world_mut();
+    let pole = world.spawn(Transform::from_xyz(0.0, 2.0, 0.0)).id();
+    let flag = world
+        .spawn((
+            Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(12, 8)),
+            ClothMaterial::silk(),
+            ClothPins::corners([GridCorner::BottomLeft]),
+            ClothSolver::GaussSeidel,
+            ClothShading::Flat,
+            ClothInertia::none(),
+            ClothSleep::never(),
+            ClothLayers::new(1, 2),
+            ClothMotionConstraints::within(0.5),
+            ClothMotionTargets::in_space(TargetSpace::World),
+            Transform::from_xyz(0.0, 2.0, 0.0),
+        ))
+        .id();
+    let attachment = ClothAttachment::edge(GridEdge::Left).with_break_force(500.0);
+    let hold = world.spawn((attachment.to(pole), AttachmentOf(flag))).id();
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let rock = world
+        .spawn((
+            ClothCollider::convex_hull(&points).unwrap(),
+            Transform::from_xyz(5.0, 0.0, 0.0),
+        ))
+        .id();
+    let fan = world.spawn(WindZone::sphere(2.0, Vec3::X)).id();
+    for _ in 0..4 {
+        before.update();
+    }
+
+    let file = save(&before, &[pole, flag, hold, rock, fan], all);
+    let mut after = app();
+    // So that entities are others than before.
+    after.world_mut().spawn_batch([(), (), ()]);
+    let others = load(&mut after, &file);
+    let [pole_after, flag_after, hold_after, rock_after, fan_after] = others[..] else {
+        panic!("{others:?}");
+    };
+
+    macro_rules! same {
+        ($(($before:ident, $after:ident): $($type:ty),+;)+) => {
+            $($(
+                assert_eq!(
+                    after.world().get::<$type>($after).unwrap(),
+                    before.world().get::<$type>($before).unwrap(),
+                );
+            )+)+
+        };
+    }
+    same! {
+        (pole, pole_after): Transform;
+        (flag, flag_after): Cloth, ClothMaterial, ClothPins, ClothSolver, ClothShading, ClothInertia, ClothSleep;
+        (flag, flag_after): ClothLayers, ClothMotionConstraints, ClothMotionTargets, Transform;
+        (hold, hold_after): ClothAttachment;
+        (rock, rock_after): ClothCollider, Transform;
+        (fan, fan_after): WindZone, Transform;
+    }
+    let world = after.world();
+    assert_eq!(world.get(hold_after), Some(&AttachmentOf(flag_after)));
+    assert_eq!(world.get(hold_after), Some(&AttachedTo(pole_after)));
+
+    // What comes with a cloth is not in the file, and there all the same: the cloth hangs on its pole.
+    for _ in 0..8 {
+        after.update();
+    }
+    let particles = after.world().get::<ClothParticles>(flag_after).unwrap();
+    assert_eq!(particles.len(), 12 * 8);
+    let status = after.world().get::<ClothStatus>(flag_after).unwrap();
+    assert_eq!(status, &ClothStatus::default());
+    assert!(after.world().get::<ClothAttachments>(flag_after).is_some());
+}
+
+/// Reflection has the errors of serde, and with them those of the constructors.
+#[test]
+fn a_wrong_shape_is_an_error_of_reflection_too() {
+    let app = app();
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let text = r#"{"tailorbird_cloth::collider::ClothCollider": (shape: Sphere(radius: NaN))}"#;
+    let mut ron = ron::Deserializer::from_str(text).unwrap();
+    let error = ReflectDeserializer::new(&registry)
+        .deserialize(&mut ron)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("ClothCollider radius is NaN"), "{error}");
+}
+
+/// All parts of what can be saved are known to the registry as well.
+#[test]
+fn resources_are_known_to_reflection() {
+    let app = app();
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let settings = ClothSettings {
+        iterations: 3,
+        ..ClothSettings::default()
+    };
+    let wind = Wind::steady(Vec3::X);
+    for value in [
+        Box::new(settings) as Box<dyn bevy_reflect::Reflect>,
+        Box::new(wind),
+    ] {
+        let value = value.as_partial_reflect();
+        let text = ron::to_string(&ReflectSerializer::new(value, &registry)).unwrap();
+        let mut ron = ron::Deserializer::from_str(&text).unwrap();
+        let back = ReflectDeserializer::new(&registry)
+            .deserialize(&mut ron)
+            .unwrap();
+        assert_eq!(value.reflect_partial_eq(&*back), Some(true), "{text}");
+    }
+}
