@@ -43,6 +43,11 @@ pub fn unfinished() -> App {
 
 /// The same as a game that asks for cloth alone.
 pub fn without_hands() -> App {
+    with_textures(ClothFabricPlugin::default())
+}
+
+/// The same, with fabrics' textures from elsewhere.
+pub fn with_textures(textures: ClothFabricPlugin) -> App {
     let mut app = App::new();
     app.add_plugins(
         DefaultPlugins
@@ -71,7 +76,7 @@ pub fn without_hands() -> App {
     // Without a graphics driver Bevy leaves this out, and despawning a camera then panics.
     .add_plugins((
         bevy::extract::sync_world::SyncWorldPlugin::<bevy::render::RenderApp>::default(),
-        ClothPlugins::default().set(ClothFabricPlugin::from_folder("textures")),
+        ClothPlugins::default().set(textures),
     ))
     .insert_resource(Time::<Fixed>::from_hz(HERTZ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / HERTZ)));

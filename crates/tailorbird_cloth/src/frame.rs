@@ -3,7 +3,7 @@
 //! ![A banner on a boat that pitches and rolls](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/banner.gif)
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use bevy_math::{Isometry3d, Mat3, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
 use bevy_transform::{components::GlobalTransform, helper::TransformHelper};
 
@@ -266,7 +266,7 @@ fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
     /// Of rounding, several parents deep.
     const MOST: f32 = 1e-3;
     let axes = transform.affine().matrix3;
-    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| axis.normalize_or_zero());
+    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3A::normalize_or_zero);
     let value = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
     (value > MOST).then_some(ClothErrorKind::Shear { value, most: MOST })
 }

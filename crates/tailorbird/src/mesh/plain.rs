@@ -64,10 +64,10 @@ pub(super) fn channel(values: &Values, channel: usize) -> Option<Vec<f32>> {
         Values::Float32x3(values) => of(values, channel, |v| v),
         Values::Float32x4(values) => of(values, channel, |v| v),
         Values::Float16(values) if channel == 0 => {
-            Some(values.iter().map(|v| v.to_f32()).collect())
+            Some(values.iter().map(|v| f32::from(*v)).collect())
         }
-        Values::Float16x2(values) => of(values, channel, |v| v.to_f32()),
-        Values::Float16x4(values) => of(values, channel, |v| v.to_f32()),
+        Values::Float16x2(values) => of(values, channel, f32::from),
+        Values::Float16x4(values) => of(values, channel, f32::from),
         Values::Unorm8(values) if channel == 0 => {
             Some(values.iter().copied().map(unorm8).collect())
         }
