@@ -1,15 +1,39 @@
-//! Whether there is something to draw with.
+//! Whether there is something to draw with, and what.
 
-use bevy::{render::renderer::RenderInstance, tasks::block_on};
+use bevy::{
+    render::{render_resource::WgpuAdapterInfo, renderer::RenderInstance},
+    tasks::block_on,
+};
 
-/// Whether there is a graphics driver, and if not, what to do about it, in one line.
+/// What draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Adapter {
+    /// A graphics card, or a part of the processor that is made for it.
+    Hardware,
+    /// The processor.
+    Software,
+}
+
+impl Adapter {
+    /// Which one this is.
+    pub fn of(info: &WgpuAdapterInfo) -> Self {
+        // Bevy does not pass the type's name on.
+        if format!("{:?}", info.device_type) == "Cpu" {
+            Self::Software
+        } else {
+            Self::Hardware
+        }
+    }
+}
+
+/// What draws; where there is no graphics driver, what to do about it, in one line.
 ///
 /// # Errors
 /// When there is none.
-pub fn check_driver() -> Result<(), String> {
+pub fn check_driver() -> Result<Adapter, String> {
     let instance = RenderInstance::new(Default::default());
     block_on(instance.request_adapter(&Default::default()))
-        .map(drop)
+        .map(|adapter| Adapter::of(&adapter.get_info()))
         .map_err(|_| format!("there is no graphics driver; {}", advice()))
 }
 

@@ -142,6 +142,7 @@ impl Offscreen {
             stage: StagePlugin {
                 target: RenderTarget::Image(target.clone()),
                 fine: options.fine,
+                ..default()
             },
         })
         .init_resource::<Album>();

@@ -7,6 +7,7 @@ use tailorbird::prelude::*;
 
 use super::{
     ask::Ask,
+    detail::Detail,
     help::CONTROLS,
     notices::{Notices, problems},
     plot::performance,
@@ -34,6 +35,9 @@ fn inner_width(window: f32) -> f32 {
 pub fn covered(window: f32) -> f32 {
     ((inner_width(window) + AROUND + MARGIN) / window.max(1.0)).min(0.5)
 }
+
+/// What the panel says where it is the processor that draws.
+pub const LOW: &str = "software renderer; --fine has everything";
 
 /// What the panel shows and changes.
 pub struct PanelState<'a> {
@@ -79,6 +83,9 @@ pub fn panel(ui: &mut Ui, state: &mut PanelState) {
         "{:.decimals$} frames/s · {:.0} particles · {:.0} constraints",
         status.frame_rate, status.particles, status.constraints
     ));
+    if status.detail == Detail::Low {
+        ui.small(LOW);
+    }
     scene(ui, state);
     section(ui, "Material", true, |ui| material(ui, state.settings));
     section(ui, "Air and gravity", true, |ui| air(ui, state.settings));

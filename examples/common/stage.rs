@@ -5,15 +5,23 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use bevy::{
     asset::RenderAssetUsages,
     camera::{Exposure, RenderTarget},
-    core_pipeline::tonemapping::Tonemapping,
-    light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap, NotShadowCaster},
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    light::{
+        CascadeShadowConfigBuilder, DirectionalLightShadowMap, NotShadowCaster,
+        cluster::ClusterConfig,
+    },
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
     render::renderer::RenderAdapterInfo,
 };
 use tailorbird::prelude::*;
 
-use super::camera::{OrbitCamera, OrbitCameraPlugin};
+use super::{
+    camera::{OrbitCamera, OrbitCameraPlugin},
+    detail::Detail,
+    graphics::Adapter,
+    low::LowMaterialPlugin,
+};
 
 /// Camera, light, ground and sky.
 #[derive(Clone, Default)]
@@ -22,12 +30,20 @@ pub struct StagePlugin {
     pub target: RenderTarget,
     /// Smooth edges even without a graphics card, where they take three times as long.
     pub fine: bool,
+    /// How much is drawn.
+    pub detail: Detail,
 }
 
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
+        if self.detail == Detail::Low {
+            app.add_plugins(LowMaterialPlugin);
+        }
         app.add_plugins(OrbitCameraPlugin)
-            .insert_resource(DirectionalLightShadowMap { size: 2048 })
+            .insert_resource(self.detail)
+            .insert_resource(DirectionalLightShadowMap {
+                size: self.detail.shadow_map(),
+            })
             .insert_resource(GlobalAmbientLight::NONE)
             // Between the ground's edge and the sky.
             .insert_resource(ClearColor(HORIZON))
@@ -55,15 +71,9 @@ fn spawn_camera(
     adapter: Option<Res<RenderAdapterInfo>>,
     mut images: ResMut<Assets<Image>>,
 ) {
-    let software = adapter.is_some_and(|adapter| format!("{:?}", adapter.device_type) == "Cpu");
+    let software = adapter.is_some_and(|adapter| Adapter::of(&adapter) == Adapter::Software);
     let smooth = stage.0.fine || !software;
-    let sky = EnvironmentMapLight::hemispherical_gradient(
-        &mut images,
-        Color::srgb(0.80, 0.86, 0.95),
-        Color::srgb(0.72, 0.72, 0.72),
-        Color::srgb(0.34, 0.31, 0.28),
-    );
-    commands.spawn((
+    let mut camera = commands.spawn((
         Name::new("camera"),
         Camera3d::default(),
         stage.0.target.clone(),
@@ -73,13 +83,8 @@ fn spawn_camera(
             ..default()
         }),
         if smooth { Msaa::Sample4 } else { Msaa::Off },
-        Tonemapping::TonyMcMapface,
         Exposure::default(),
         OrbitCamera::new(Vec3::Y, 20.0, 10.0, 5.0),
-        EnvironmentMapLight {
-            intensity: 1100.0,
-            ..sky
-        },
         DistanceFog {
             color: HORIZON,
             falloff: FogFalloff::Linear {
@@ -89,6 +94,31 @@ fn spawn_camera(
             ..default()
         },
     ));
+    match stage.0.detail {
+        Detail::Full => {
+            let sky = EnvironmentMapLight::hemispherical_gradient(
+                &mut images,
+                Color::srgb(0.80, 0.86, 0.95),
+                Color::srgb(0.72, 0.72, 0.72),
+                Color::srgb(0.34, 0.31, 0.28),
+            );
+            camera.insert((
+                Tonemapping::TonyMcMapface,
+                EnvironmentMapLight {
+                    intensity: 1100.0,
+                    ..sky
+                },
+            ));
+        }
+        // Its materials bring the light of the sky and the tones themselves, and there are no lamps.
+        Detail::Low => {
+            camera.insert((
+                Tonemapping::None,
+                DebandDither::Disabled,
+                ClusterConfig::Single,
+            ));
+        }
+    }
 }
 
 fn spawn_light(mut commands: Commands) {

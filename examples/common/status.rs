@@ -11,6 +11,7 @@ use tailorbird::prelude::*;
 use super::{
     clock::{StageClockPlugin, StageTimes},
     compare::{self, Beside, ClothFigures},
+    detail::Detail,
     scenes::SceneCloth,
     settings::DemoSettings,
 };
@@ -29,6 +30,8 @@ impl Plugin for StatusPlugin {
 /// Figures of now and of the last seconds.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Status {
+    /// How much is drawn.
+    pub detail: Detail,
     /// Frames per second.
     pub frame_rate: f64,
     /// Particles of all cloths.
@@ -89,8 +92,10 @@ fn observe(
     diagnostics: Res<DiagnosticsStore>,
     stages: Res<StageTimes>,
     step: Res<ClothStepTime>,
+    detail: Option<Res<Detail>>,
     mut status: ResMut<Status>,
 ) {
+    status.detail = detail.map_or_else(Detail::default, |detail| *detail);
     let figure = |path: &DiagnosticPath| diagnostics.get(path);
     let last = |path: &DiagnosticPath| figure(path).and_then(Diagnostic::value).unwrap_or(0.0);
     status.frame_rate = figure(&FrameTimeDiagnosticsPlugin::FPS)

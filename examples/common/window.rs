@@ -93,16 +93,26 @@ fn make_room_for_panel(
     }
 }
 
-/// Ends the app after as many frames as `TAILORBIRD_EXIT_AFTER_FRAMES` says, for tests.
+/// Ends the app after as many frames as `TAILORBIRD_EXIT_AFTER_FRAMES` says, for tests, and logs how many a second
+/// the later half of them were.
 pub struct ExitAfterFrames;
 
 impl Plugin for ExitAfterFrames {
     fn build(&self, app: &mut App) {
         let frames = std::env::var("TAILORBIRD_EXIT_AFTER_FRAMES").ok();
         if let Some(frames) = frames.and_then(|frames| frames.parse::<u32>().ok()) {
-            let exit = move |mut done: Local<u32>, mut exit: MessageWriter<AppExit>| {
+            let exit = move |time: Res<Time<Real>>,
+                             mut done: Local<u32>,
+                             mut since: Local<f64>,
+                             mut exit: MessageWriter<AppExit>| {
                 *done += 1;
+                let now = time.elapsed_secs_f64();
+                if *done == frames / 2 {
+                    *since = now;
+                }
                 if *done >= frames {
+                    let rate = f64::from(*done - frames / 2) / (now - *since).max(1e-6);
+                    info!("{rate:.1} frames/s");
                     exit.write(AppExit::Success);
                 }
             };

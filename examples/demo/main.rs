@@ -13,8 +13,9 @@ use clap::Parser;
 use common::{
     apply::DemoPlugin,
     ask::SettingsPath,
+    detail::{Detail, Start, Wishes},
     garment,
-    graphics::{check_driver, has_display},
+    graphics::{Adapter, check_driver, has_display},
     help,
     offscreen::{self, OffscreenOptions},
     scenes::SceneKind,
@@ -32,7 +33,7 @@ struct Arguments {
     /// curtain, flag, tablecloth, ball, cape, banner, garment, crates or fan
     #[arg(long)]
     scene: Option<SceneKind>,
-    /// Particles along the longer side of the cloth [default: 128]
+    /// Particles along the longer side of the cloth [default: 128; 48 in a window without a graphics card]
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=512))]
     resolution: Option<u32>,
     /// Settings to begin with, as F5 saves them; F5 and F9 save to and load from this file
@@ -50,12 +51,12 @@ struct Arguments {
     /// With --offscreen: what happens, instead of the scene's own script
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Smooth edges, even without a graphics card, where they take three times as long
+    /// Everything, even in a window without a graphics card, where it is slow; in pictures, smooth edges
     #[arg(long)]
     fine: bool,
-    /// Width and height [pixels]
-    #[arg(long, value_parser = size, value_name = "WxH", default_value = "1280x720")]
-    size: UVec2,
+    /// Width and height [pixels] [default: 1280x720; 800x450 in a window without a graphics card]
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    size: Option<UVec2>,
 }
 
 fn after_help() -> String {
@@ -73,20 +74,30 @@ fn main() -> ExitCode {
 }
 
 fn run(mut arguments: Arguments) -> Result<ExitCode, String> {
-    check_driver()?;
+    let adapter = check_driver()?;
     if arguments.offscreen.is_none() && !has_display() {
         eprintln!("demo: there is no display; drawing pictures to ./out instead");
         arguments.offscreen = Some("out".into());
     }
     match arguments.offscreen.take() {
         Some(dir) => draw(&arguments, dir),
-        None => play(&arguments),
+        None => play(&arguments, adapter),
     }
 }
 
 /// Opens the window.
-fn play(arguments: &Arguments) -> Result<ExitCode, String> {
-    let settings = settings(arguments, arguments.scene)?;
+fn play(arguments: &Arguments, adapter: Adapter) -> Result<ExitCode, String> {
+    let wishes = Wishes {
+        fine: arguments.fine,
+        size: arguments.size,
+        resolution: arguments.resolution,
+        from_file: arguments.settings.is_some(),
+    };
+    let Start {
+        detail,
+        size,
+        settings,
+    } = Start::new(adapter, wishes, settings(arguments, arguments.scene)?);
     let path = arguments.settings.clone();
     let path = path.map_or_else(SettingsPath::default, SettingsPath);
     let exit = App::new()
@@ -96,7 +107,7 @@ fn play(arguments: &Arguments) -> Result<ExitCode, String> {
                 .set(WindowPlugin {
                     primary_window: Some(Window {
                         title: "Tailorbird".into(),
-                        resolution: (arguments.size.x, arguments.size.y).into(),
+                        resolution: (size.x, size.y).into(),
                         ..default()
                     }),
                     ..default()
@@ -109,6 +120,7 @@ fn play(arguments: &Arguments) -> Result<ExitCode, String> {
                 settings,
                 stage: StagePlugin {
                     fine: arguments.fine,
+                    detail,
                     ..default()
                 },
             },
@@ -139,7 +151,7 @@ fn draw(arguments: &Arguments, dir: PathBuf) -> Result<ExitCode, String> {
             dir: dir.clone(),
             seconds: arguments.seconds,
             every: arguments.every,
-            size: arguments.size,
+            size: arguments.size.unwrap_or(Detail::Full.size()),
             fine: arguments.fine,
             settings,
             script: script.clone().unwrap_or_else(|| Script::of(scene)),

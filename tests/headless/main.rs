@@ -11,6 +11,7 @@ mod bad_input;
 mod catenary;
 mod demo;
 mod demo_hands;
+mod detail;
 mod determinism;
 mod drag;
 mod drawn_holds;

@@ -146,6 +146,10 @@ fn paused_it_stands_still_at_the_last_step() {
 fn uvs_run_from_the_top_left_corner_and_tangents_along_u() {
     let mut app = game();
     let cloth = curtain(&mut app, 5);
+    // A material that is not known may look at tangents.
+    app.world_mut()
+        .entity_mut(cloth)
+        .remove::<MeshMaterial3d<StandardMaterial>>();
     app.world_mut().resource_mut::<ClothSettings>().paused = true;
     frames(&mut app, 3);
     let Some(VertexAttributeValues::Float32x2(uvs)) =
@@ -162,6 +166,32 @@ fn uvs_run_from_the_top_left_corner_and_tangents_along_u() {
         // glTF's convention, and so Bevy's: the bitangent w (n × t) points up in the picture, where v falls.
         let bitangent = normal.cross(tangent.truncate()) * tangent.w;
         assert!(bitangent.distance(Vec3::Y) < 1e-5, "{tangent} {normal}");
+    }
+}
+
+/// With tangents but without a normal map Bevy does not turn the normals of backs.
+#[test]
+fn there_are_tangents_where_the_material_looks_at_them() {
+    let mut app = game();
+    let cloth = curtain(&mut app, 5);
+    let mut materials = app.world_mut().resource_mut::<Assets<StandardMaterial>>();
+    let plain = materials.add(StandardMaterial::default());
+    let mapped = materials.add(StandardMaterial {
+        normal_map_texture: Some(Handle::default()),
+        ..default()
+    });
+    for (material, has) in [(&plain, false), (&mapped, true), (&plain, false)] {
+        app.world_mut()
+            .entity_mut(cloth)
+            .insert(MeshMaterial3d(material.clone()));
+        frames(&mut app, 3);
+        let found = mesh(&app, cloth).attribute(Mesh::ATTRIBUTE_TANGENT);
+        assert_eq!(found.is_some(), has);
+        if has {
+            let along = tangents(&app, cloth)[12].truncate();
+            assert!(along.is_normalized(), "{along}");
+        }
+        assert!(normals(&app, cloth).iter().all(|n| n.is_normalized()));
     }
 }
 

@@ -6,8 +6,9 @@ use tailorbird::prelude::*;
 use crate::common::{
     ask::Ask,
     compare::ClothFigures,
+    detail::Detail,
     notices::{Notices, problems},
-    panel::{PanelState, panel},
+    panel::{LOW, PanelState, panel},
     scenes::SceneKind,
     settings::DemoSettings,
     status::Status,
@@ -118,6 +119,15 @@ pub fn find(shapes: &[Shape], text: &str) -> Option<Pos2> {
 fn looking_at_it_changes_nothing() {
     let bench = Bench::new();
     assert_eq!(bench.settings, DemoSettings::default());
+}
+
+#[test]
+fn it_tells_where_less_is_drawn_than_could_be() {
+    let mut bench = Bench::new();
+    assert!(find(&bench.shapes, LOW).is_none());
+    bench.status.detail = Detail::Low;
+    bench.pass(Vec::new());
+    assert!(LOW.contains("--fine") && find(&bench.shapes, LOW).is_some());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Makes a cloth of meshes that are there already.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use bevy_camera::{primitives::Aabb, visibility::NoAutoAabb};
 use bevy_ecs::prelude::*;
@@ -110,7 +110,7 @@ pub(super) fn cloth_from_mesh(
         &mut ClothStatus,
     )>,
     mut changes: Changes,
-    mut pending: Local<HashSet<Entity>>,
+    mut pending: Local<HashMap<Entity, bool>>,
     mut count: Local<u64>,
     finder: Finder,
     parts: Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
@@ -119,21 +119,28 @@ pub(super) fn cloth_from_mesh(
     parallel_commands: ParallelCommands,
 ) {
     let happened = changes.read();
-    pending.extend(happened.makers);
+    // Whether those that wait are to be made whatever is found.
+    for maker in happened.makers {
+        pending.entry(maker).or_default();
+    }
     for (entity, from_mesh, pins, source, is_cloth, mut status) in &mut entities {
         let other_assets = source.is_some_and(|source| {
             let mut parts = source.parts.iter();
             parts.any(|part| happened.assets.contains(&part.mesh.id()))
         });
-        let asked = !is_cloth || from_mesh.is_changed() || other_assets;
+        let waited = pending.remove(&entity);
+        let changed = from_mesh.is_changed() || other_assets;
+        let asked = !is_cloth || changed || waited == Some(true);
         // A cloth that was not made here stays what it is.
-        if is_cloth && source.is_none() || !asked && !pending.contains(&entity) {
+        if is_cloth && source.is_none() || !asked && waited.is_none() {
             continue;
         }
-        let (mut errors, mut waiting) = (Vec::new(), false);
+        let mut errors = Vec::new();
         match make(entity, &from_mesh, &finder, &mut errors) {
             // What is still being loaded is waited for; meanwhile the cloth stays what it was.
-            Ok(None) => waiting = true,
+            Ok(None) => {
+                pending.insert(entity, asked);
+            }
             Ok(Some(mut made))
                 if asked || source.is_none_or(|old| !old.has_same_parts(&made.source)) =>
             {
@@ -159,11 +166,6 @@ pub(super) fn cloth_from_mesh(
             Ok(Some(_)) => {}
             Err(error) => errors.push(error),
         }
-        if waiting {
-            pending.insert(entity);
-        } else {
-            pending.remove(&entity);
-        }
         ClothStatus::update(
             &mut status,
             entity,
@@ -172,7 +174,7 @@ pub(super) fn cloth_from_mesh(
             errors,
         );
     }
-    pending.retain(|entity| entities.contains(*entity));
+    pending.retain(|entity, _| entities.contains(*entity));
 }
 
 impl ClothMeshSource {

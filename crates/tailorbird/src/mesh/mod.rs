@@ -15,6 +15,7 @@ pub mod rendering;
 mod slab;
 mod sorting;
 mod tangents;
+mod tangents_wanted;
 mod vertices;
 mod write;
 
@@ -129,6 +130,8 @@ impl Plugin for ClothMeshPlugin {
                     (
                         build::build_cloth_mesh,
                         previous::add_previous_positions,
+                        tangents_wanted::fit_tangents
+                            .run_if(resource_exists::<Assets<StandardMaterial>>),
                         write::watch_meshes,
                         write::bound_cloth_meshes,
                         build::make_materials_two_sided
