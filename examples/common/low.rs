@@ -48,7 +48,13 @@ pub struct LowMaterial {
     surface: LowSurface,
     #[texture(1)]
     texture: Option<Handle<Image>>,
+    /// Is none: in its place comes what Bevy has for that, with a sampler that is not anisotropic.
+    #[texture(2)]
+    #[sampler(3)]
+    plain: Option<Handle<Image>>,
     unlit: bool,
+    /// Whether nothing is drawn where the colour is transparent.
+    holes: bool,
 }
 
 /// What the shader is told.
@@ -65,6 +71,7 @@ struct LowSurface {
 pub struct LowKey {
     textured: bool,
     unlit: bool,
+    holes: bool,
 }
 
 impl From<&LowMaterial> for LowKey {
@@ -72,6 +79,7 @@ impl From<&LowMaterial> for LowKey {
         Self {
             textured: material.texture.is_some(),
             unlit: material.unlit,
+            holes: material.holes,
         }
     }
 }
@@ -87,7 +95,9 @@ impl LowMaterial {
                 surface: Vec4::new(exponent, strength, base.diffuse_transmission, 0.0),
             },
             texture: base.base_color_texture.clone(),
+            plain: None,
             unlit: base.unlit,
+            holes: base.alpha_mode != AlphaMode::Opaque,
         }
     }
 }
@@ -118,9 +128,17 @@ impl Material for LowMaterial {
     ) -> Result<(), SpecializedMeshPipelineError> {
         // Cloth has a back, and the sky is seen from within.
         descriptor.primitive.cull_mode = None;
-        let LowKey { textured, unlit } = key.bind_group_data;
+        let LowKey {
+            textured,
+            unlit,
+            holes,
+        } = key.bind_group_data;
         if let Some(fragment) = &mut descriptor.fragment {
-            let defs = [("LOW_TEXTURED", textured), ("LOW_UNLIT", unlit)];
+            let defs = [
+                ("LOW_TEXTURED", textured),
+                ("LOW_UNLIT", unlit),
+                ("LOW_HOLES", holes),
+            ];
             let meant = defs.into_iter().filter(|(_, meant)| *meant);
             fragment
                 .shader_defs

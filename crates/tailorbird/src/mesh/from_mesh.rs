@@ -87,6 +87,7 @@ impl ClothFromMesh {
 #[derive(Component, Clone, Debug)]
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
+    weld_distance: f32,
     /// How many cloths had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
@@ -110,16 +111,15 @@ pub(super) fn cloth_from_mesh(
         &mut ClothStatus,
     )>,
     mut changes: Changes,
-    mut pending: Local<HashMap<Entity, bool>>,
+    mut pending: Local<HashMap<Entity, Waiting>>,
     mut count: Local<u64>,
     finder: Finder,
-    parts: Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
+    parts: Query<(Option<&ClothMeshOf>, Option<&SkinSetAside>, Option<&Mesh3d>)>,
     skins: Query<&SkinnedMesh>,
     mut commands: Commands,
     parallel_commands: ParallelCommands,
 ) {
     let happened = changes.read();
-    // Whether those that wait are to be made whatever is found.
     for maker in happened.makers {
         pending.entry(maker).or_default();
     }
@@ -129,27 +129,32 @@ pub(super) fn cloth_from_mesh(
             parts.any(|part| happened.assets.contains(&part.mesh.id()))
         });
         let waited = pending.remove(&entity);
-        let changed = from_mesh.is_changed() || other_assets;
-        let asked = !is_cloth || changed || waited == Some(true);
+        let before = waited.unwrap_or_default();
+        let other_assets = other_assets || before.other_assets;
+        let asked = !is_cloth || from_mesh.is_changed() || other_assets || before.asked;
         // A cloth that was not made here stays what it is.
         if is_cloth && source.is_none() || !asked && waited.is_none() {
             continue;
         }
+        let waits = Waiting {
+            asked,
+            other_assets,
+        };
         let mut errors = Vec::new();
         match make(entity, &from_mesh, &finder, &mut errors) {
             // What is still being loaded is waited for; meanwhile the cloth stays what it was.
             Ok(None) => {
-                pending.insert(entity, asked);
+                pending.insert(entity, waits);
             }
             Ok(Some(mut made))
-                if asked || source.is_none_or(|old| !old.has_same_parts(&made.source)) =>
+                if asked || source.is_none_or(|old| !old.is_part_of(&made.source)) =>
             {
                 *count += 1;
                 made.source.made = *count;
                 let mut pins = pins.cloned().unwrap_or_default();
                 if let Some(old) = source {
                     pins.pins.retain(|pin| Some(pin) != old.pin.as_ref());
-                    if other_assets || !old.has_same_parts(&made.source) {
+                    if other_assets || !old.has_same_particles(&made.source) {
                         pins.pins.retain(ClothPin::is_by_place);
                     }
                     give_back(old, &made.source, &parts, &mut commands);
@@ -164,7 +169,13 @@ pub(super) fn cloth_from_mesh(
                 };
             }
             Ok(Some(_)) => {}
-            Err(error) => errors.push(error),
+            Err(error) => {
+                // What is wrong may be mended in an asset that this cloth was not made of.
+                if is_cloth {
+                    pending.insert(entity, waits);
+                }
+                errors.push(error);
+            }
         }
         ClothStatus::update(
             &mut status,
@@ -177,12 +188,28 @@ pub(super) fn cloth_from_mesh(
     pending.retain(|entity, _| entities.contains(*entity));
 }
 
+/// Why a cloth that waits for its meshes is made.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Waiting {
+    /// Whether it is made whatever is found.
+    asked: bool,
+    /// Whether meshes that it was made of are not what they were.
+    other_assets: bool,
+}
+
 impl ClothMeshSource {
-    /// Whether these are the same meshes of the same entities.
-    fn has_same_parts(&self, other: &Self) -> bool {
-        let same = |a: &MeshSource, b: &MeshSource| a.entity == b.entity && a.mesh == b.mesh;
-        self.parts.len() == other.parts.len()
-            && self.parts.iter().zip(&other.parts).all(|(a, b)| same(a, b))
+    /// Whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
+    fn is_part_of(&self, other: &Self) -> bool {
+        let mut all = self.parts.iter();
+        all.all(|part| other.parts.iter().any(|other| part.is_same(other)))
+    }
+
+    /// Whether a cloth of these meshes has the particles that one of those has.
+    fn has_same_particles(&self, other: &Self) -> bool {
+        let mut pairs = self.parts.iter().zip(&other.parts);
+        self.weld_distance == other.weld_distance
+            && self.parts.len() == other.parts.len()
+            && pairs.all(|(a, b)| a.is_same(b))
     }
 }
 
@@ -267,6 +294,7 @@ fn make(
         cloth: Cloth { shape },
         source: ClothMeshSource {
             parts,
+            weld_distance: from_mesh.weld_distance,
             made: 0,
             left_out: from_mesh.pins.paint().filter(|_| !from_mesh.draw_paint),
             pin,
@@ -294,25 +322,26 @@ fn held(
     Ok(Some((weights, pin)))
 }
 
-/// Gives meshes that are no part of the cloth any more what they were.
+/// Gives meshes that are no part of the cloth any more what they were, but for what others have given them since.
 fn give_back(
     old: &ClothMeshSource,
     new: &ClothMeshSource,
-    parts: &Query<(&ClothMeshOf, Option<&SkinSetAside>)>,
+    parts: &Query<(Option<&ClothMeshOf>, Option<&SkinSetAside>, Option<&Mesh3d>)>,
     commands: &mut Commands,
 ) {
     for part in &old.parts {
         let stays = new.parts.iter().any(|other| other.entity == part.entity);
-        let Ok((_, skin)) = parts.get(part.entity) else {
+        let Ok((of, skin, shown)) = parts.get(part.entity) else {
             continue;
         };
         if stays {
             continue;
         }
         let mut entity = commands.entity(part.entity);
-        entity
-            .insert(Mesh3d(part.mesh.clone()))
-            .remove::<(ClothMeshOf, SkinSetAside, NoAutoAabb, Aabb)>();
+        if matches!((of, shown), (Some(of), Some(shown)) if of.built == shown.0) {
+            entity.insert(Mesh3d(part.mesh.clone()));
+        }
+        entity.remove::<(ClothMeshOf, SkinSetAside, NoAutoAabb, Aabb)>();
         if let Some(SkinSetAside(skin)) = skin {
             entity.insert(skin.clone());
         }

@@ -36,6 +36,13 @@ pub(super) struct MeshSource {
     pub to_cloth: Option<Affine3A>,
 }
 
+impl MeshSource {
+    /// Whether this is the same mesh of the same entity.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.entity == other.entity && self.mesh == other.mesh
+    }
+}
+
 /// What came of the search.
 pub(super) enum Found {
     /// Something is still loading, or is not there yet.
@@ -95,7 +102,7 @@ impl Finder<'_, '_> {
             if let Some(scene) = scene {
                 self.check_loaded(scene.0.id().untyped(), || format!("{:?}", scene.0.path()))?;
                 scenes += 1;
-                waits |= children.is_none();
+                waits |= children.is_none() || self.is_loading(scene.0.id().untyped());
             }
             if let Some(patch) = patch.filter(|_| !complete) {
                 self.check_loaded(patch.0.id().untyped(), || format!("{:?}", patch.0.path()))?;
@@ -148,6 +155,11 @@ impl Finder<'_, '_> {
     /// A mesh that was found.
     pub fn mesh(&self, source: &MeshSource) -> Option<&Mesh> {
         self.meshes.get(&source.mesh)
+    }
+
+    fn is_loading(&self, id: UntypedAssetId) -> bool {
+        let state = self.server.as_ref().map(|server| server.load_state(id));
+        matches!(state, Some(LoadState::Loading))
     }
 
     fn check_loaded(

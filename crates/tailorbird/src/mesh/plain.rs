@@ -123,6 +123,12 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
             (id, Values::Unorm16x2(packed)) if id == Mesh::ATTRIBUTE_UV_1.id => {
                 copy.insert_attribute(Mesh::ATTRIBUTE_UV_1, uvs(mesh, packed, 1));
             }
+            (id, values) if id == Mesh::ATTRIBUTE_UV_0.id => {
+                insert_uvs(&mut copy, Mesh::ATTRIBUTE_UV_0, values);
+            }
+            (id, values) if id == Mesh::ATTRIBUTE_UV_1.id => {
+                insert_uvs(&mut copy, Mesh::ATTRIBUTE_UV_1, values);
+            }
             _ => copy.insert_attribute(*attribute, values.clone()),
         }
     }
@@ -130,6 +136,14 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
         copy.insert_indices(indices.clone());
     }
     Ok(copy)
+}
+
+/// Texture coordinates in whatever form.
+fn insert_uvs(mesh: &mut Mesh, attribute: MeshVertexAttribute, values: &Values) {
+    if let (Some(u), Some(v)) = (channel(values, 0), channel(values, 1)) {
+        let uvs: Vec<[f32; 2]> = u.into_iter().zip(v).map(|(u, v)| [u, v]).collect();
+        mesh.insert_attribute(attribute, uvs);
+    }
 }
 
 fn uvs(mesh: &Mesh, packed: &[[u16; 2]], set: usize) -> Vec<[f32; 2]> {

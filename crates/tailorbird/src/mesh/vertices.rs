@@ -219,6 +219,8 @@ impl Vertices {
         let zeros = vec![[0.0f32; 3]; particle_of_vertex.len()];
         mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, zeros.clone());
         mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, zeros);
+        // Tangents that nothing moves would stay as they were at rest.
+        mesh.remove_attribute(Mesh::ATTRIBUTE_TANGENT);
         let tangents = self.uvs.map(|uvs| {
             let uvs: Vec<Vec2> = self
                 .source_vertex
