@@ -17,6 +17,9 @@ pub struct ClothSettings {
     /// motion finer, at proportional cost. `None` is as many as the finest cloth needs: see
     /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
     pub substeps: Option<u32>,
+    /// The most substeps that a cloth takes where their number is not set. It takes up to two and a half times as many as at rest
+    /// while it is asked for more than its fabric has: see [`ClothStatus::strained`](crate::error::ClothStatus::strained).
+    pub most_substeps: u32,
     /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
     /// in few.
     pub iterations: u32,
@@ -28,6 +31,9 @@ pub struct ClothSettings {
     /// For cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
     /// everything.
     pub time_scale: f32,
+    /// How fast what is inside a collider is pushed out of it, where it did not go in by its own motion: because one of the two
+    /// appeared there, or was put there [m/s]. It gets no velocity of that.
+    pub overlap_speed: f32,
     /// Stops the simulation. Cloths stay as they are.
     pub paused: bool,
     /// While paused: how many steps to do all the same. Counts down.
@@ -80,9 +86,11 @@ impl Default for ClothSettings {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             substeps: None,
+            most_substeps: 64,
             iterations: 1,
             instruction_set: InstructionSet::Auto,
             time_scale: 1.0,
+            overlap_speed: 1.0,
             paused: false,
             pending_steps: 0,
         }
@@ -111,6 +119,18 @@ impl ClothSettings {
                 self.substeps.unwrap_or(1) as f32,
                 |v| (1.0..=most).contains(&v),
                 "1 to 1000",
+            ),
+            ClothErrorKind::number(
+                "ClothSettings.most_substeps",
+                self.most_substeps as f32,
+                |v| (1.0..=most).contains(&v),
+                "1 to 1000",
+            ),
+            ClothErrorKind::number(
+                "ClothSettings.overlap_speed",
+                self.overlap_speed,
+                |v| v >= 0.0,
+                "at least 0 [m/s]",
             ),
             ClothErrorKind::number(
                 "ClothSettings.iterations",

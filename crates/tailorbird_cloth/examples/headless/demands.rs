@@ -208,9 +208,9 @@ impl Play {
             }
             Scene::Upright if time > 1.0 => {
                 if let Some(mut pins) = world.get_mut::<ClothPins>(cloth)
-                    && pins.has_user_pins()
+                    && !pins.pins.is_empty()
                 {
-                    pins.release_user_pins();
+                    pins.pins.clear();
                 }
                 None
             }

@@ -1,5 +1,7 @@
 //! Contacts of the particles of a cloth with one collider.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use bevy_math::{Isometry3d, Mat3, Vec3};
 use fearless_simd::Level;
 
@@ -16,7 +18,7 @@ use crate::{
     solver::kernels::{
         ball::{Ball, Ground},
         capsule::Capsule,
-        contact::{Phase, Touching},
+        contact::{Out, Phase, Touching},
         cuboid::Cuboid,
         cylinder::Cylinder,
         half_space::{self, MovingHalfSpace},
@@ -94,7 +96,12 @@ macro_rules! with_solid {
 }
 
 /// The particles of a cloth, as kernels take them.
-fn touching(particles: &mut ClothParticles, phase: Phase, note: bool) -> Touching<'_> {
+fn touching<'a>(
+    particles: &'a mut ClothParticles,
+    phase: Phase,
+    note: bool,
+    out: Out<'a>,
+) -> Touching<'a> {
     let ClothParticles {
         position,
         previous_position,
@@ -116,6 +123,7 @@ fn touching(particles: &mut ClothParticles, phase: Phase, note: bool) -> Touchin
             )
         }),
         phase,
+        out,
     }
 }
 
@@ -159,6 +167,16 @@ impl MovingCollider {
         let friction = combined_friction(self.friction, material.friction);
         let motion = motion(way, friction);
         let turn = turn(way);
+        // What motion constraints pull back into a collider did not go there by itself either.
+        let overlaps = AtomicBool::new(false);
+        let out = Out {
+            most: if cloth.motion.is_some() {
+                f32::INFINITY
+            } else {
+                substep.out()
+            },
+            overlaps: &overlaps,
+        };
         let particles = &mut *cloth.particles;
         let len = particles.len();
         let mut start = 0;
@@ -169,7 +187,7 @@ impl MovingCollider {
                 phase,
                 substep,
                 (&motion, turn, margin),
-                touching(particles, phase, true),
+                touching(particles, phase, true, out),
                 around.seen(self),
                 range.clone(),
             );
@@ -179,6 +197,7 @@ impl MovingCollider {
                 around.update(substep.level, points, range);
             }
         }
+        particles.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some(held) = particles.grabbed {
             self.collide_held(held.particle as usize, &motion, margin, particles, around);
         }
@@ -241,7 +260,11 @@ impl MovingCollider {
         range: std::ops::Range<usize>,
         found: &mut Vec<usize>,
     ) {
-        let touching = touching(particles, Phase::Final, false);
+        let out = Out {
+            most: f32::INFINITY,
+            overlaps: &AtomicBool::new(false),
+        };
+        let touching = touching(particles, Phase::Final, false, out);
         let seen = around.seen(self);
         with_solid!(&self.solid, margin, seen, |solid| {
             solid::find(&solid, motion, touching, range, |i| found.push(i));

@@ -20,8 +20,10 @@ impl Pass<'_> {
         let material = self.material;
         let ClothParticles {
             position,
+            previous_position,
             inv_mass,
             contacts,
+            effort,
             ..
         } = particles;
         let mesh = Mesh {
@@ -32,6 +34,7 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
+            recovery: self.recovery(*effort, previous_position),
         };
         let passes = &fabric.chains().passes;
         for k in 0..passes.len() {

@@ -1,8 +1,10 @@
 //! The systems of a substep; their arithmetic is in [`kernels`].
 
+mod calm;
 pub(crate) mod chains;
 mod classic;
 mod fabric;
+mod give;
 pub mod kernels;
 #[cfg(test)]
 mod mesh_tests;
@@ -12,6 +14,7 @@ use bevy_reflect::prelude::*;
 
 use crate::{
     cloth::Cloth,
+    effort,
     particles::ClothParticles,
     stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
     step::ClothStep,
@@ -34,9 +37,10 @@ pub enum ClothSolver {
 impl ClothSolver {
     /// How many substeps a cloth needs in a step of 1/60 s.
     ///
-    /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
+    /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, n, and no less than n²/4096, 8 to 16, and 6 where that has
+    /// 36 or less; even.
     /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 12th of
-    /// the square root of its particles, 8 to 16. Both take up to 32, a fifth of the longer side, while a hand holds the cloth.
+    /// the square root of its particles, 8 to 16. Both take up to 40, a quarter of the longer side, while a hand holds the cloth.
     /// [`GaussSeidel`](Self::GaussSeidel): 16.
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
@@ -44,7 +48,7 @@ impl ClothSolver {
                 let needed = if let Some(lattice) = topology.lattice {
                     let side = lattice.columns.max(lattice.rows);
                     let least = if side <= 36 { 6 } else { 8 };
-                    side.div_ceil(24).max(least)
+                    side.div_ceil(24).max(least).max(side * side / 4096)
                 } else {
                     // The chains of a mesh are shorter and bent, and more of them meet at a particle.
                     let side = (topology.particles() as f32).sqrt().ceil() as u32;
@@ -57,14 +61,14 @@ impl ClothSolver {
     }
 
     /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
-    /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
+    /// pulls, and the weight of the sheet has to follow. A quarter of the particles along the longer side, at most 40; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
         let side = match (self, topology.lattice) {
             (Self::GaussSeidel, _) => 0,
             (Self::Chains, Some(lattice)) => lattice.columns.max(lattice.rows),
             (Self::Chains, None) => (topology.particles() as f32).sqrt().ceil() as u32,
         };
-        side.div_ceil(5).next_multiple_of(2).min(32)
+        side.div_ceil(4).next_multiple_of(2).min(40)
     }
 }
 
@@ -92,6 +96,7 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
     let (topology, material) = (cloth.topology, cloth.material);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
+    particles.calm_strained(seconds);
     let verlet = Verlet {
         seconds,
         seconds_before: particles.substep_seconds,
@@ -144,7 +149,10 @@ pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Clot
 pub(crate) fn calm(substep: &Substep, cloth: &mut ClothStagesItem) {
     let solves = *cloth.solver == ClothSolver::Chains && substep.iterations > 0;
     if solves && substep.left() == 1 {
-        chains::calm(substep.level, cloth.topology, &mut cloth.particles);
+        let pass = chains::Pass::of(substep, cloth.topology, cloth.material, 0);
+        let longest = pass.slack() + effort::STRAIN;
+        calm::calm(substep.level, cloth.topology, longest, &mut cloth.particles);
+        cloth.particles.disturb(cloth.topology);
     }
 }
 
@@ -159,15 +167,7 @@ pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
     match cloth.solver {
         ClothSolver::Chains => {
             for k in 0..substep.iterations {
-                let pass = chains::Pass {
-                    level: substep.level,
-                    crew: substep.crew,
-                    topology,
-                    material,
-                    seconds: substep.seconds,
-                    gravity: substep.gravity.length(),
-                    number: substep.index + k,
-                };
+                let pass = chains::Pass::of(substep, topology, material, k);
                 pass.solve(cloth.tethers, &mut cloth.particles);
             }
         }

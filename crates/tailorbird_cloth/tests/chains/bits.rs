@@ -83,10 +83,14 @@ fn systems_of_a_game_between_the_stages_change_nothing() {
                 let count = |mut calls: ResMut<Calls>| calls.0 += 1;
                 sheet.app.add_systems(ClothSubstep, count);
             }
-            sheet.steps(60);
+            // Their number follows what the sheet is asked for.
+            let mut substeps = 0;
+            for _ in 0..60 {
+                sheet.step();
+                substeps += sheet.app.world().resource::<ClothStep>().substeps();
+            }
             let calls = sheet.app.world().resource::<Calls>().0;
-            let substeps = sheet.app.world().resource::<ClothStep>().substeps();
-            assert_eq!(calls, if with_system { 60 * substeps } else { 0 });
+            assert_eq!(calls, if with_system { substeps } else { 0 });
             sheet.hash()
         };
         assert_eq!(hash(true), hash(false));

@@ -39,9 +39,6 @@ fn a_hanging_sheet_hardly_stretches() {
     check("hang, last quarter", hanging, 1e-3, 1e-2);
 }
 
-/// Where forces are many times the weight, transverse waves outrun the eight substeps of a quiet sheet of this size.
-const BUSY: Option<u32> = Some(16);
-
 #[test]
 fn a_sheet_in_a_storm_hardly_stretches() {
     // 20 m/s.
@@ -49,7 +46,8 @@ fn a_sheet_in_a_storm_hardly_stretches() {
         pins: ClothPins::edges([GridEdge::Left]),
         gravity: Vec3::NEG_Y * G,
         wind: Wind::steady(Vec3::new(19.0, 0.0, 6.2)),
-        substeps: BUSY,
+        // What a quiet sheet of this size takes stands less, and more come only when it is strained.
+        substeps: Some(16),
         ..Scene::hang(SIZE)
     });
     let worst = worst(&mut sheet, 300, |_, _| ());
@@ -58,9 +56,10 @@ fn a_sheet_in_a_storm_hardly_stretches() {
 
 #[test]
 fn a_sheet_that_is_dragged_quickly_hardly_stretches() {
+    // At 8 g the corners bear many times what the substeps of a quiet sheet of this size stand.
     let mut sheet = Sheet::new(&Scene {
         gravity: Vec3::NEG_Y * G,
-        substeps: BUSY,
+        substeps: Some(32),
         ..Scene::hang(SIZE)
     });
     let pins = [0, SIZE.x - 1].map(|i| (i, sheet.particles().position(i as usize)));

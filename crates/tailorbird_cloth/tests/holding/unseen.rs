@@ -115,7 +115,7 @@ fn it_goes_on_as_one_that_was_seen_all_the_time() {
             }
             let away = furthest(&before, &shape(&world, cloth));
             // Its holder has turned by 1 rad meanwhile: the air comes from elsewhere, and it swings round, half a second long.
-            assert!(away < 0.3, "{held:?}, {unseen}: {away}");
+            assert!(away < 0.36, "{held:?}, {unseen}: {away}");
             for i in 0..144 {
                 let speed = world.velocity(cloth, i).length();
                 assert!((speed - RUN).abs() < 1.5, "{held:?}, {unseen}: {speed}");

@@ -29,7 +29,12 @@
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
-use super::lanes::{Factor, Shared, SharedPoints, V3, WIDEST};
+pub use super::edges::LineStiffness;
+use super::lanes::{Factor, Shared, SharedPoints, V3};
+pub(crate) use super::{
+    edges::{Edge, Edges, MeshLines},
+    recovery::Recovery,
+};
 
 /// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
 const NO_MASS: f32 = 1e-30;
@@ -41,7 +46,10 @@ const LEAST_PIVOT: f32 = 0.05;
 /// The least α̃_k L_k², as a part of (w_k + w_{k+1}) L²: the tension of what is taut and straight, such as a row between two
 /// pins, would have no bounds else, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet
 /// that hangs stretches half as much again.
-const LEAST_COMPLIANCE: f32 = 5e-4;
+pub(crate) const LEAST_COMPLIANCE: f32 = 5e-4;
+
+/// The largest κ = 4 w |μ| of a line whose inverse masses are w: what is above 4/3 lets waves of two edges' length grow.
+const LARGEST_KAPPA: f32 = 1.3;
 
 /// No particle is in contact.
 pub(crate) const FREE: u8 = 0;
@@ -62,6 +70,8 @@ pub(crate) struct Lines<'a> {
     /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
     /// lies like this as well.
     pub bent: SharedPoints<'a>,
+    /// Where the fabric is stretched or squeezed as it is not by itself.
+    pub recovery: Option<Recovery<'a>>,
     /// First particle of the first lane.
     pub offset: usize,
     /// From one particle of a chain to the next.
@@ -93,89 +103,6 @@ impl Lines<'_> {
     }
 }
 
-/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStiffness {
-    /// L \[m\].
-    pub rest_length: f32,
-    /// α̃ = α/h² [1/kg].
-    pub stretch: f32,
-    /// α̃ of the triples [1/kg]; infinite is without bending.
-    pub bend: f32,
-}
-
-impl LineStiffness {
-    /// The edges and the α̃ of the triples of the lines from `first` on, one in each lane, of `count` in all.
-    #[inline(always)]
-    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, S::f32s) {
-        let mut scale = [1.0; WIDEST];
-        if first == 0 {
-            scale[0] = 2.0;
-        }
-        // A sheet has two lines at least.
-        if let Some(last) = scale[..S::f32s::LEN].get_mut(count - 1 - first) {
-            *last = 2.0;
-        }
-        let scale = S::f32s::from_slice(simd, &scale[..S::f32s::LEN]);
-        let l2 = self.rest_length * self.rest_length;
-        let edge = Edge {
-            l2: S::f32s::splat(simd, l2),
-            alpha: scale * (self.stretch * l2),
-        };
-        (edge, scale * self.bend)
-    }
-}
-
-/// What an edge resists with, for each lane.
-#[derive(Clone, Copy)]
-pub(crate) struct Edge<S: Simd> {
-    /// L² \[m²\].
-    pub l2: S::f32s,
-    /// α̃ L² \[m²/kg\].
-    pub alpha: S::f32s,
-}
-
-/// What the edges of chains resist with.
-pub(crate) trait Edges<S: Simd>: Copy {
-    /// Those from the particles `k` to the next.
-    fn at(self, simd: S, k: usize) -> Edge<S>;
-}
-
-/// Edges that are all the same along a chain.
-impl<S: Simd> Edges<S> for Edge<S> {
-    #[inline(always)]
-    fn at(self, _simd: S, _k: usize) -> Self {
-        self
-    }
-}
-
-/// Edges that differ: those of a mesh.
-#[derive(Clone, Copy)]
-pub(crate) struct MeshLines<'a> {
-    /// L \[m\], 0 where there is no edge.
-    pub rest_length: &'a [f32],
-    /// By what `stretch` is multiplied [-].
-    pub scale: &'a [f32],
-    /// α̃ of an edge whose scale is 1 [1/kg].
-    pub stretch: f32,
-    /// From one edge of a chain to the next.
-    pub stride: usize,
-}
-
-impl<S: Simd> Edges<S> for MeshLines<'_> {
-    #[inline(always)]
-    fn at(self, simd: S, k: usize) -> Edge<S> {
-        let load =
-            |values: &[f32]| S::f32s::from_slice(simd, &values[k * self.stride..][..S::f32s::LEN]);
-        let length = load(self.rest_length);
-        let l2 = length * length;
-        Edge {
-            l2,
-            alpha: load(self.scale) * self.stretch * l2,
-        }
-    }
-}
-
 /// A sweep forward: the particles e, e+1 and e+2 around the edge e, and what the elimination carries on.
 struct Sweep<'a, S: Simd, E> {
     simd: S,
@@ -191,6 +118,8 @@ struct Sweep<'a, S: Simd, E> {
     w_b: S::f32s,
     w_c: S::f32s,
     n_a: V3<S>,
+    /// Where `a` was at the start of the substep.
+    start_a: V3<S>,
     weights: Weights<S>,
     /// The edge before: d, 1/pivot, solution.
     d: V3<S>,
@@ -249,6 +178,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
             w_b: lines.weight(simd, 1),
             w_c: zero,
             n_a: nothing,
+            start_a: nothing,
             weights: Weights {
                 parts: [zero; 3],
                 run: 0,
@@ -259,6 +189,9 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         };
         if CONTACT != FREE {
             s.n_a = lines.normal(simd, 0);
+        }
+        if let Some(recovery) = lines.recovery {
+            s.start_a = recovery.start.load(simd, lines.at(0));
         }
         if BEND && lines.len > 2 {
             (s.c, s.w_c) = (lines.particle(simd, 2), lines.weight(simd, 2));
@@ -294,7 +227,10 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         let d = s.b - s.a;
         let q = d.dot(d);
         let w = s.w_a + s.w_b;
-        let stretch = alpha.max(w * (l2 * LEAST_COMPLIANCE));
+        let least = lines
+            .recovery
+            .map_or(LEAST_COMPLIANCE, |recovery| recovery.compliance);
+        let stretch = alpha.max(w * (l2 * least));
         let mut diagonal = w * q.max(quarter) + (stretch + least_w);
         let mut dd = s.d.dot(d);
         if CONTACT != FREE {
@@ -306,7 +242,14 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
             s.n_a = n_b;
         }
         let beside = s.w_a * dd;
-        let rhs = ((l2 - q) * 0.5).min(quarter);
+        let mut target = l2;
+        if let Some(recovery) = lines.recovery {
+            let start_b: V3<S> = recovery.start.load(simd, lines.at(e + 1));
+            let before = start_b - s.start_a;
+            target = recovery.target::<S>(before.dot(before), l2);
+            s.start_a = start_b;
+        }
+        let rhs = ((target - q) * 0.5).min(quarter);
         // −beside is the off-diagonal of the edges e − 1 and e. What waits for the division before is as short as can be.
         let pivot = diagonal - beside * beside * s.inv_pivot;
         let inv_pivot = S::f32s::splat(simd, 1.0) / pivot;
@@ -322,21 +265,34 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 }
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
+///
+/// |μ| is at most κ/(4 w), w being the larger inverse mass of the two ends. Since |u_a − u_b|² ≤ 2 w (u_a²/w_a + u_b²/w_b) and a particle
+/// has two edges of its line, no wave across the line is then pulled back by more than κ of itself, whatever the masses.
 #[inline(always)]
 fn substitute<S: Simd, const CONTACT: u8>(simd: S, lines: Lines, factors: Shared) {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
+    let kappa = S::f32s::splat(simd, 0.25 * LARGEST_KAPPA);
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
+    let mut w_far = lines.weight(simd, m - 1);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
+    // Of the edge before, as most have the same: the larger inverse mass, and what it allows.
+    let (mut largest, mut most) = (zero, zero);
     for e in (0..m - 1).rev() {
         let near = lines.bent.load(simd, e * lanes);
+        let w_near = lines.weight(simd, e);
+        let w = w_near.max(w_far);
+        if e + 2 == m || !w.simd_eq(largest).all_true() {
+            (largest, most) = (w, kappa / w);
+        }
         let mu = factors.load(simd, (2 * e + 1) * lanes) + factor * mu_far;
+        let mu = mu.min(most).max(zero - most);
         factor = factors.load(simd, 2 * e * lanes);
         let push = Factor(mu) * (far - near);
-        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), far, push - pull);
-        (far, pull, mu_far) = (near, push, mu);
+        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), (far, w_far), push - pull);
+        (far, w_far, pull, mu_far) = (near, w_near, push, mu);
     }
-    apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
+    apply::<S, CONTACT>(simd, lines, lines.at(0), (far, w_far), nothing - pull);
 }
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.
@@ -345,7 +301,7 @@ fn apply<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     i: usize,
-    position: V3<S>,
+    (position, w): (V3<S>, S::f32s),
     mut push: V3<S>,
 ) {
     if CONTACT != FREE {
@@ -357,7 +313,6 @@ fn apply<S: Simd, const CONTACT: u8>(
             pressed.store::<S>(i, pressed.load(simd, i) + along);
         }
     }
-    let w = lines.inv_mass.load(simd, i);
     lines.position.store(i, position + Factor(w) * push);
 }
 

@@ -12,7 +12,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::{Block, for_bodies},
-    line::{self, FREE, MeshLines, PRESSED, TOUCHING},
+    line::{self, FREE, MeshLines, PRESSED, Recovery, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
 };
@@ -38,6 +38,8 @@ pub(crate) struct Mesh<'a> {
     pub normal: Option<SharedPoints<'a>>,
     /// Where what pushes particles along their normals is added up.
     pub pressed: Option<Shared<'a>>,
+    /// How what is stretched or squeezed comes back; at once where there is none.
+    pub recovery: Option<Recovery<'a>>,
 }
 
 impl Mesh<'_> {
@@ -53,7 +55,8 @@ impl Mesh<'_> {
             points(self.position)
                 && self.inv_mass.len() == n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n),
+                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.recovery.is_none_or(|recovery| points(recovery.start)),
             "a mesh of {n} particles"
         );
     }
@@ -125,7 +128,7 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     mesh.check();
     let batches = &mesh.fabric.chains().batches[batches];
     let longest = batches.iter().map(|batch| batch.length).max().unwrap_or(0);
-    with_scratch(longest * WIDEST * 10, |scratch| {
+    with_scratch(longest * WIDEST * 13, |scratch| {
         for batch in batches {
             if mesh.pressed.is_some() {
                 for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
@@ -166,6 +169,10 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             if let Some(normal) = mesh.normal {
                 block.normal.store(k * n, lanes.load_points(simd, normal));
             }
+            if let Some(recovery) = mesh.recovery {
+                let start = lanes.load_points(simd, recovery.start);
+                block.start.store(k * n, start);
+            }
             if let (true, Some(pressed)) = (BODIES, mesh.pressed) {
                 block.pressed.store::<S>(k * n, lanes.load(simd, pressed));
             }
@@ -176,7 +183,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             stretch,
             stride: LANES,
         };
-        let (lines, zero) = (block.lines(m, n), S::f32s::splat(simd, 0.0));
+        let (lines, zero) = (block.lines(m, n, mesh.recovery), S::f32s::splat(simd, 0.0));
         if BODIES {
             line::solve::<S, _, false, PRESSED>(simd, lines, edges, zero, factors);
         } else if mesh.normal.is_some() {

@@ -87,11 +87,18 @@ fn diagonals<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>, r
             let w_b = sheet.inv_mass.load_at(simd, window, b);
             let d = p_b - p_a;
             let q = d.dot(d);
-            let excess = q - l2;
+            let mut target = l2;
+            if let Some(recovery) = sheet.recovery {
+                let start_a: V3<S> = recovery.start.load_at(simd, window, a);
+                let start_b: V3<S> = recovery.start.load_at(simd, window, b);
+                let before = start_b - start_a;
+                target = recovery.target::<S>(before.dot(before), l2);
+            }
+            let excess = q - target;
             // As for bending: see `line`.
             let w = w_a + w_b;
             let w = (w * 0.5 + alpha).max(w);
-            let s = (excess + excess) / ((q * 3.0 + l2) * w);
+            let s = (excess + excess) / ((q * 3.0 + target) * w);
             let push = Factor(s) * d;
             sheet
                 .position

@@ -7,7 +7,7 @@ use fearless_simd::Level;
 
 use super::{
     breeze::{self, Breeze},
-    contact::{Phase, Touching},
+    contact::{Out, Phase, Touching},
     distance,
     half_space::{self, MovingHalfSpace},
     lanes::{Shared, SharedPoints},
@@ -130,6 +130,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         inv_mass: Shared::new(&mut inv_mass),
         normal: None,
         pressed: None,
+        recovery: None,
     };
     let line = LineStiffness {
         rest_length: SPACING,
@@ -158,7 +159,12 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
             row: 0,
             spacing: Vec2::splat(SPACING),
         };
-        Some(Tether { anchor, ways })
+        Some(Tether {
+            anchor,
+            anchor_before: anchor,
+            longer: 1.0,
+            ways,
+        })
     };
     let tethers = [tether(Vec3::ZERO, 0), tether(corner, side - 1)];
     times.add("tethers", 2 * n * n, || {
@@ -198,6 +204,10 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
         inv_mass: Shared::new(&mut inv_mass),
         contacts: None,
         phase: Phase::Final,
+        out: Out {
+            most: f32::INFINITY,
+            overlaps: &std::sync::atomic::AtomicBool::new(false),
+        },
     };
     let motion = Motion {
         sheet: Sheet {
@@ -207,6 +217,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             inv_mass: particles.inv_mass,
             normal: None,
             pressed: None,
+            recovery: None,
         },
         previous: particles.previous,
         lost: SharedPoints::new(&mut lost),

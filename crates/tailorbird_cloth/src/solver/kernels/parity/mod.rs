@@ -9,6 +9,7 @@ use fearless_simd::Level;
 use super::{
     lanes::{Shared, SharedPoints, levels},
     lattice::Sheet,
+    line::Recovery,
 };
 use crate::{numbers::Numbers, points::Points, topology::test_meshes::random};
 
@@ -104,6 +105,7 @@ impl State {
             inv_mass: Shared::new(&mut self.inv_mass),
             normal: contact.then(|| SharedPoints::new(&mut self.normal)),
             pressed: (contact && self.bodies).then(|| Shared::new(&mut self.pressed)),
+            recovery: contact.then(|| recovery(&mut self.previous)),
         });
     }
 
@@ -113,6 +115,16 @@ impl State {
         let numbers = points.into_iter().flat_map(|p| [&p.x, &p.y, &p.z]);
         let all = numbers.chain([&self.depth, &self.pressed]).flatten();
         all.map(|v| v.to_bits()).collect()
+    }
+}
+
+/// Of what is strained.
+fn recovery(start: &mut Points) -> Recovery<'_> {
+    Recovery {
+        start: SharedPoints::new(start),
+        least: 0.01,
+        part: 0.05,
+        compliance: 0.02,
     }
 }
 
