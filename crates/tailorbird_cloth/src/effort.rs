@@ -65,17 +65,21 @@ impl Effort {
         if self.recovers { self.strained } else { 0.0 }
     }
 
-    /// Sees at the end of a step which part of the edges is strained.
+    /// Sees at the end of a step which part of the edges is strained, and whether any is longer than twice its length.
     ///
     /// The number of substeps goes up and down in few steps that last, as each change is a small jolt to what lies still.
-    pub fn see(&mut self, strained: f32, contacts: &Contacts) {
+    pub fn see(&mut self, strained: f32, torn: bool, contacts: &Contacts) {
         self.strained = strained;
         let most = if self.recovers {
             STILL_STRAINED
         } else {
             STRAINED
         };
-        self.steps = if strained > most { self.steps + 1 } else { 0 };
+        self.steps = if strained > most || torn {
+            self.steps + 1
+        } else {
+            0
+        };
         let moment = match (contacts.overlaps, contacts.any) {
             (true, _) => MOMENTS[0],
             (false, true) => MOMENTS[1],

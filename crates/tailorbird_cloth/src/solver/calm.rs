@@ -41,7 +41,7 @@ pub(crate) fn calm(
         let survey = squeeze::survey(level, sheet, lattice.spacing, longest);
         // What carries bodies takes more substeps for them already, and would throw them.
         if contacts.around.couplings.is_empty() {
-            effort.see(survey.strained, contacts);
+            effort.see(survey.strained, survey.torn, contacts);
         } else {
             *effort = Effort::default();
         }
@@ -69,7 +69,7 @@ pub(crate) fn calm(
             count += 1;
         }
         if contacts.around.couplings.is_empty() {
-            effort.see(strained as f32 / count.max(1) as f32, contacts);
+            effort.see(strained as f32 / count.max(1) as f32, false, contacts);
         } else {
             *effort = Effort::default();
         }

@@ -24,6 +24,8 @@ pub(crate) struct Survey {
     pub squeezed: bool,
     /// The part of them that is longer than it should be [-].
     pub strained: f32,
+    /// Whether any is longer than twice its length.
+    pub torn: bool,
 }
 
 /// Looks at all edges; those are strained that are longer than `longest` times their length at rest.
@@ -35,8 +37,8 @@ pub(crate) fn survey(level: Level, sheet: Sheet, spacing: Vec2, longest: f32) ->
 #[inline(always)]
 fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, longest: f32) -> Survey {
     let columns = sheet.columns;
-    let [least, most] = [LEAST, longest * longest].map(|part| spacing * spacing * part);
-    let mut squeezed = false;
+    let [least, most, twice] = [LEAST, longest * longest, 4.0].map(|part| spacing * spacing * part);
+    let (mut squeezed, mut torn) = (false, false);
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     // Whole numbers, which add up to the same in any order.
     let mut strained = 0;
@@ -44,9 +46,9 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, longest: f32) -> S
         let first = row * columns;
         let below = if row + 1 < sheet.rows { columns } else { 0 };
         let mut of_row = zero;
-        for (count, to, least, most) in [
-            (columns - 1, 1, least.x, most.x),
-            (below, columns, least.y, most.y),
+        for (count, to, least, most, twice) in [
+            (columns - 1, 1, least.x, most.x, twice.x),
+            (below, columns, least.y, most.y, twice.y),
         ] {
             each_window(
                 simd,
@@ -57,6 +59,7 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, longest: f32) -> S
                     let d = sheet.position.load_at(simd, window, first + to) - from;
                     let q = d.dot(d);
                     squeezed |= q.simd_lt(S::f32s::splat(simd, least)).any_true();
+                    torn |= q.simd_gt(S::f32s::splat(simd, twice)).any_true();
                     let long = q.simd_gt(S::f32s::splat(simd, most));
                     of_row += (long & window.todo(simd)).select(one, zero);
                 },
@@ -68,6 +71,7 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, longest: f32) -> S
     Survey {
         squeezed,
         strained: strained as f32 / edges as f32,
+        torn,
     }
 }
 
