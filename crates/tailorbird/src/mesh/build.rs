@@ -4,7 +4,7 @@ use bevy_asset::{AssetId, Assets, Handle};
 use bevy_camera::visibility::NoAutoAabb;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_mesh::{Mesh, Mesh3d};
+use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexAttributeValues};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
@@ -72,6 +72,33 @@ impl ClothMeshPart {
             own_change: false,
             outdated: false,
         }
+    }
+
+    /// Gives its mesh a place for an attribute, with these values for so many vertices, or takes it away.
+    pub(super) fn fit_attribute(
+        &mut self,
+        meshes: &mut Assets<Mesh>,
+        attribute: MeshVertexAttribute,
+        wanted: bool,
+        values: impl FnOnce(usize) -> VertexAttributeValues,
+    ) {
+        let differs = |mesh: &Mesh| {
+            mesh.try_contains_attribute(attribute)
+                .is_ok_and(|has| has != wanted)
+        };
+        if !meshes.get(&self.handle).is_some_and(differs) {
+            return;
+        }
+        let Some(mut mesh) = meshes.get_mut(&self.handle) else {
+            return;
+        };
+        let changed = if wanted {
+            let values = values(mesh.count_vertices());
+            mesh.try_insert_attribute(attribute, values).is_ok()
+        } else {
+            mesh.try_remove_attribute(attribute).is_ok()
+        };
+        self.own_change |= changed;
     }
 
     /// The entity that has the mesh: the cloth itself or one below it.

@@ -121,7 +121,7 @@ pub(super) fn cloth_from_mesh(
 ) {
     let happened = changes.read();
     for maker in happened.makers {
-        pending.entry(maker).or_default();
+        pending.entry(maker).or_default().failed = false;
     }
     for (entity, from_mesh, pins, source, is_cloth, mut status) in &mut entities {
         let other_assets = source.is_some_and(|source| {
@@ -130,16 +130,22 @@ pub(super) fn cloth_from_mesh(
         });
         let waited = pending.remove(&entity);
         let before = waited.unwrap_or_default();
+        let changed = from_mesh.is_changed() || other_assets;
         let other_assets = other_assets || before.other_assets;
-        let asked = !is_cloth || from_mesh.is_changed() || other_assets || before.asked;
+        let asked = !is_cloth || changed || other_assets || before.asked;
         // A cloth that was not made here stays what it is.
         if is_cloth && source.is_none() || !asked && waited.is_none() {
             continue;
         }
-        let waits = Waiting {
+        let mut waits = Waiting {
             asked,
             other_assets,
+            failed: false,
         };
+        if before.failed && !changed && happened.assets.is_empty() {
+            pending.insert(entity, before);
+            continue;
+        }
         let mut errors = Vec::new();
         match make(entity, &from_mesh, &finder, &mut errors) {
             // What is still being loaded is waited for; meanwhile the cloth stays what it was.
@@ -172,6 +178,7 @@ pub(super) fn cloth_from_mesh(
             Err(error) => {
                 // What is wrong may be mended in an asset that this cloth was not made of.
                 if is_cloth {
+                    waits.failed = true;
                     pending.insert(entity, waits);
                 }
                 errors.push(error);
@@ -195,6 +202,8 @@ pub(super) struct Waiting {
     asked: bool,
     /// Whether meshes that it was made of are not what they were.
     other_assets: bool,
+    /// Whether what was found was wrong: it is looked at again when a mesh asset, or what it is made of, changes.
+    failed: bool,
 }
 
 impl ClothMeshSource {

@@ -117,19 +117,14 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
                     .collect();
                 copy.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
             }
-            (id, Values::Unorm16x2(packed)) if id == Mesh::ATTRIBUTE_UV_0.id => {
-                copy.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs(mesh, packed, 0));
-            }
-            (id, Values::Unorm16x2(packed)) if id == Mesh::ATTRIBUTE_UV_1.id => {
-                copy.insert_attribute(Mesh::ATTRIBUTE_UV_1, uvs(mesh, packed, 1));
-            }
-            (id, values) if id == Mesh::ATTRIBUTE_UV_0.id => {
-                insert_uvs(&mut copy, Mesh::ATTRIBUTE_UV_0, values);
-            }
-            (id, values) if id == Mesh::ATTRIBUTE_UV_1.id => {
-                insert_uvs(&mut copy, Mesh::ATTRIBUTE_UV_1, values);
-            }
-            _ => copy.insert_attribute(*attribute, values.clone()),
+            _ => match UV_SETS.iter().position(|set| set.id == attribute.id) {
+                Some(set) => {
+                    if let Some(uvs) = uvs(mesh, values, set) {
+                        copy.insert_attribute(UV_SETS[set], uvs);
+                    }
+                }
+                None => copy.insert_attribute(*attribute, values.clone()),
+            },
         }
     }
     if let Ok(Some(indices)) = mesh.try_indices_option() {
@@ -138,22 +133,21 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
     Ok(copy)
 }
 
-/// Texture coordinates in whatever form.
-fn insert_uvs(mesh: &mut Mesh, attribute: MeshVertexAttribute, values: &Values) {
-    if let (Some(u), Some(v)) = (channel(values, 0), channel(values, 1)) {
-        let uvs: Vec<[f32; 2]> = u.into_iter().zip(v).map(|(u, v)| [u, v]).collect();
-        mesh.insert_attribute(attribute, uvs);
-    }
-}
+/// Bevy's sets of texture coordinates.
+const UV_SETS: [MeshVertexAttribute; 2] = [Mesh::ATTRIBUTE_UV_0, Mesh::ATTRIBUTE_UV_1];
 
-fn uvs(mesh: &Mesh, packed: &[[u16; 2]], set: usize) -> Vec<[f32; 2]> {
-    let (min, size) = mesh.final_uv_ranges[set].map_or((Vec2::ZERO, Vec2::ONE), |range| {
+/// Texture coordinates of a set, in whatever form; Bevy's compression keeps them within their range.
+fn uvs(mesh: &Mesh, values: &Values, set: usize) -> Option<Vec<[f32; 2]>> {
+    let range = match values {
+        Values::Unorm16x2(_) => mesh.final_uv_ranges[set],
+        _ => None,
+    };
+    let (min, size) = range.map_or((Vec2::ZERO, Vec2::ONE), |range| {
         (range.min, range.max - range.min)
     });
-    packed
-        .iter()
-        .map(|uv| (min + size * Vec2::from(uv.map(unorm16))).to_array())
-        .collect()
+    let place = |(u, v)| (min + size * Vec2::new(u, v)).to_array();
+    let (u, v) = (channel(values, 0)?, channel(values, 1)?);
+    Some(u.into_iter().zip(v).map(place).collect())
 }
 
 fn snorm16(value: i16) -> f32 {

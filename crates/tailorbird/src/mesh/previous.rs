@@ -22,25 +22,9 @@ pub(super) fn add_previous_positions(
     let wanted = settings.motion_vectors;
     for mut cloth in &mut cloths {
         for part in &mut cloth.bypass_change_detection().parts {
-            let has = |mesh: &Mesh| {
-                mesh.try_contains_attribute(ATTRIBUTE_PREVIOUS_POSITION)
-                    .is_ok_and(|has| has != wanted)
-            };
-            if !meshes.get(&part.handle).is_some_and(has) {
-                continue;
-            }
-            let Some(mut mesh) = meshes.get_mut(&part.handle) else {
-                continue;
-            };
-            let changed = if wanted {
-                let places = vec![[0.0f32; 3]; mesh.count_vertices()];
-                mesh.try_insert_attribute(ATTRIBUTE_PREVIOUS_POSITION, places)
-                    .is_ok()
-            } else {
-                mesh.try_remove_attribute(ATTRIBUTE_PREVIOUS_POSITION)
-                    .is_ok()
-            };
-            part.own_change |= changed;
+            part.fit_attribute(&mut meshes, ATTRIBUTE_PREVIOUS_POSITION, wanted, |count| {
+                vec![[0.0f32; 3]; count].into()
+            });
         }
     }
 }

@@ -33,25 +33,11 @@ pub(super) fn fit_tangents(
                 continue;
             };
             let wanted = wants_tangents(material);
-            let possible = !wanted || part.follow.tangents.is_some();
-            let differs = |mesh: &Mesh| {
-                mesh.try_contains_attribute(Mesh::ATTRIBUTE_TANGENT)
-                    .is_ok_and(|has| has != wanted)
-            };
-            if !possible || !meshes.get(&part.handle).is_some_and(differs) {
-                continue;
+            if !wanted || part.follow.tangents.is_some() {
+                part.fit_attribute(&mut meshes, Mesh::ATTRIBUTE_TANGENT, wanted, |count| {
+                    vec![[0.0f32; 4]; count].into()
+                });
             }
-            let Some(mut mesh) = meshes.get_mut(&part.handle) else {
-                continue;
-            };
-            let changed = if wanted {
-                let tangents = vec![[0.0f32; 4]; mesh.count_vertices()];
-                mesh.try_insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents)
-                    .is_ok()
-            } else {
-                mesh.try_remove_attribute(Mesh::ATTRIBUTE_TANGENT).is_ok()
-            };
-            part.own_change |= changed;
         }
     }
 }
