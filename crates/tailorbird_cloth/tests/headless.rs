@@ -90,12 +90,16 @@ fn json_has_the_keys_and_their_types() {
     let keys: Vec<&str> = report.keys().map(String::as_str).collect();
     let expected = [
         "constraints",
+        "energy_gained",
+        "highest_y",
         "kinetic_energy",
         "lowest_y",
         "min_sphere_clearance",
         "momentum",
         "ms_per_step_median",
         "particles",
+        "speed_max",
+        "speed_peak",
         "state_hash",
         "step_speed_max",
         "step_speed_rms",
@@ -103,6 +107,7 @@ fn json_has_the_keys_and_their_types() {
         "stretch_max",
         "stretch_mean",
         "stretch_p99",
+        "stretch_peak",
         "substeps",
     ];
     assert_eq!(keys, expected);
@@ -234,6 +239,12 @@ fn wrong_values_are_named_with_their_flag_and_end_with_code_2() {
         ("--size", "5000"),
         ("--pins", "all"),
         ("--steps", "-1"),
+        ("--material", "steel"),
+        ("--apart", "x"),
+        ("--tight", "-0.1"),
+        ("--depth", "NaN"),
+        ("--speed", "0"),
+        ("--body", "cat"),
         ("--hz", "0"),
         ("--hz", "NaN"),
         ("--hz", "-60"),

@@ -6,6 +6,8 @@ use bevy_math::Vec3;
 use clap::{Parser, ValueEnum};
 use tailorbird_cloth::prelude::*;
 
+use super::demands::Demands;
+
 /// A cloth without a renderer: simulates a sheet of 2 m × 2 m, horizontal at y = 1 at the start, and prints figures.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "headless", version)]
@@ -26,14 +28,9 @@ pub struct Args {
     #[arg(long, value_enum)]
     pub pins: Option<Pins>,
 
-    /// How many steps to simulate.
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 300,
-        allow_hyphen_values = true
-    )]
-    pub steps: u32,
+    /// How many steps to simulate [default: 300, or as long as the scene lasts].
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub steps: Option<u32>,
 
     /// Steps in a second [1/s].
     #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_hyphen_values = true)]
@@ -52,14 +49,17 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Solver::Chains)]
     pub solver: Solver,
 
+    /// What the sheet is made of; the values below count all the same [default: cotton that does not stretch].
+    #[arg(long, value_name = "NAME", value_parser = material, allow_hyphen_values = true)]
+    pub material: Option<ClothMaterial>,
+
     /// Acceleration downwards [m/s²].
     #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = finite, allow_hyphen_values = true)]
     pub gravity: f32,
 
-    /// Rate at which motion decays [1/s].
-    #[arg(long, value_name = "D", default_value_t = ClothMaterial::default().damping,
-          value_parser = not_negative, allow_hyphen_values = true)]
-    pub damping: f32,
+    /// Rate at which motion decays [1/s] [default: the material's].
+    #[arg(long, value_name = "D", value_parser = not_negative, allow_hyphen_values = true)]
+    pub damping: Option<f32>,
 
     /// Velocity of the air [m/s]; 0,0,0 is no air at all [default: 8,0,2 in the scene flag, else 0,0,0].
     #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
@@ -73,27 +73,29 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Isa::Auto)]
     pub isa: Isa,
 
-    /// Compliance along warp and weft [m/N].
-    #[arg(long, value_name = "A", default_value_t = 0.0, value_parser = not_negative, allow_hyphen_values = true)]
-    pub compliance: f32,
+    /// Compliance along warp and weft [m/N] [default: 0, or the material's].
+    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    pub compliance: Option<f32>,
 
-    /// Compliance in shear [m/N] [default: cotton's for chains, 0 for gauss-seidel].
+    /// Compliance in shear [m/N] [default: the material's; 0 without one for gauss-seidel].
     #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
     pub shear_compliance: Option<f32>,
 
-    /// Compliance in bending [1/(N m)] [default: cotton's for chains, 0 for gauss-seidel].
+    /// Compliance in bending [1/(N m)] [default: the material's; 0 without one for gauss-seidel].
     #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
     pub bend_compliance: Option<f32>,
 
-    /// Friction inside the fabric [m²/s].
-    #[arg(long, value_name = "V", default_value_t = ClothMaterial::default().viscosity,
-          value_parser = not_negative, allow_hyphen_values = true)]
-    pub viscosity: f32,
+    /// Friction inside the fabric [m²/s] [default: the material's].
+    #[arg(long, value_name = "V", value_parser = not_negative, allow_hyphen_values = true)]
+    pub viscosity: Option<f32>,
 
-    /// Mass per area [kg/m²].
-    #[arg(long, value_name = "R", default_value_t = ClothMaterial::default().areal_density,
-          value_parser = positive, allow_hyphen_values = true)]
-    pub density: f32,
+    /// Mass per area [kg/m²] [default: the material's].
+    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
+    pub density: Option<f32>,
+
+    /// What the scenes ask for.
+    #[command(flatten)]
+    pub demands: Demands,
 
     /// Threads of the compute pool [default: one for each core].
     #[arg(long, value_name = "T", value_parser = threads, allow_hyphen_values = true)]
@@ -132,6 +134,24 @@ pub enum Scene {
     Drape,
     /// Falls.
     Free,
+    /// Between two posts that stand too far apart.
+    Posts,
+    /// The same, and one is put back at once.
+    PutBack,
+    /// A body is put into a curtain.
+    Impaled,
+    /// The same, and is taken away.
+    ImpaledGone,
+    /// A ball is pushed into a net that is held all round, and comes back.
+    Net,
+    /// A tube around a ball that is too large.
+    Tube,
+    /// A body appears that reaches into a sheet.
+    Overlap,
+    /// A curtain whose pins are released over the ground.
+    Upright,
+    /// A ball flies through a curtain.
+    Ball,
 }
 
 /// How the sheet is described.
@@ -152,6 +172,8 @@ pub enum Pins {
     Corners,
     /// Row 0.
     Edge,
+    /// The whole border.
+    Border,
     /// None.
     None,
 }
@@ -206,8 +228,10 @@ impl Args {
     pub fn pins(&self) -> Pins {
         self.pins.unwrap_or(match self.scene {
             Scene::Hang => Pins::Corners,
-            Scene::Flag => Pins::Edge,
-            Scene::Drape | Scene::Free => Pins::None,
+            Scene::Net => Pins::Border,
+            Scene::Drape | Scene::Free | Scene::Posts | Scene::PutBack => Pins::None,
+            Scene::Tube | Scene::Overlap => Pins::None,
+            _ => Pins::Edge,
         })
     }
 
@@ -215,7 +239,7 @@ impl Args {
     pub fn wind(&self) -> Vec3 {
         self.wind.unwrap_or(match self.scene {
             Scene::Flag => Vec3::new(8.0, 0.0, 2.0),
-            Scene::Hang | Scene::Drape | Scene::Free => Vec3::ZERO,
+            _ => Vec3::ZERO,
         })
     }
 
@@ -224,21 +248,36 @@ impl Args {
     /// The springs of the classic scheme are rigid, as they always were; shear and bending that are as soft as a fabric's are
     /// what lets the chain solver's sheet fold.
     pub fn material(&self) -> ClothMaterial {
-        let cotton = ClothMaterial::cotton();
-        let [shear, bend] = match self.solver {
-            Solver::GaussSeidel => [0.0; 2],
-            Solver::Chains => [cotton.shear_compliance, cotton.bend_compliance],
+        let rigid = ClothMaterial {
+            warp_compliance: 0.0,
+            weft_compliance: 0.0,
+            ..ClothMaterial::cotton()
         };
+        let base = self.material.unwrap_or(match self.solver {
+            Solver::GaussSeidel => ClothMaterial {
+                shear_compliance: 0.0,
+                bend_compliance: 0.0,
+                ..rigid
+            },
+            Solver::Chains => rigid,
+        });
         ClothMaterial {
-            areal_density: self.density,
-            warp_compliance: self.compliance,
-            weft_compliance: self.compliance,
-            shear_compliance: self.shear_compliance.unwrap_or(shear),
-            bend_compliance: self.bend_compliance.unwrap_or(bend),
-            damping: self.damping,
-            viscosity: self.viscosity,
-            ..cotton
+            areal_density: self.density.unwrap_or(base.areal_density),
+            warp_compliance: self.compliance.unwrap_or(base.warp_compliance),
+            weft_compliance: self.compliance.unwrap_or(base.weft_compliance),
+            shear_compliance: self.shear_compliance.unwrap_or(base.shear_compliance),
+            bend_compliance: self.bend_compliance.unwrap_or(base.bend_compliance),
+            damping: self.damping.unwrap_or(base.damping),
+            viscosity: self.viscosity.unwrap_or(base.viscosity),
+            ..base
         }
+    }
+
+    /// How many steps to simulate.
+    pub fn steps(&self) -> u32 {
+        let seconds = self.scene.seconds(&self.demands);
+        let of_scene = seconds.map_or(300, |seconds| (seconds * self.hz).round() as u32);
+        self.steps.unwrap_or(of_scene)
     }
 
     /// The sphere asked for, or that of the scene.
@@ -248,9 +287,18 @@ impl Args {
                 center: Vec3::new(0.0, 0.45, 0.0),
                 radius: 0.5,
             }),
-            Scene::Hang | Scene::Flag | Scene::Free => None,
+            _ => None,
         })
     }
+}
+
+fn material(text: &str) -> Result<ClothMaterial, String> {
+    let presets = ClothMaterial::presets();
+    let found = presets.iter().find(|(name, _)| *name == text);
+    found.map(|(_, material)| *material).ok_or_else(|| {
+        let names = presets.map(|(name, _)| name).join(", ");
+        format!("must be one of {names}")
+    })
 }
 
 fn size(text: &str) -> Result<u32, String> {
@@ -282,11 +330,11 @@ fn whole(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
     range.contains(&value).then_some(value).ok_or_else(allowed)
 }
 
-fn finite(text: &str) -> Result<f32, String> {
+pub fn finite(text: &str) -> Result<f32, String> {
     number(text, f32::is_finite, "a finite number")
 }
 
-fn positive(text: &str) -> Result<f32, String> {
+pub fn positive(text: &str) -> Result<f32, String> {
     number(
         text,
         |v: f32| v > 0.0 && v.is_finite(),
@@ -294,7 +342,7 @@ fn positive(text: &str) -> Result<f32, String> {
     )
 }
 
-fn not_negative(text: &str) -> Result<f32, String> {
+pub fn not_negative(text: &str) -> Result<f32, String> {
     number(
         text,
         |v: f32| v >= 0.0 && v.is_finite(),

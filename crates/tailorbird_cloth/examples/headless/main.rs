@@ -8,8 +8,10 @@
 //! JSON with `--json`. `--dump` writes where the particles are. `--help` lists the rest.
 
 mod cli;
+mod demands;
 mod dump;
 mod mesh;
+mod peaks;
 mod report;
 mod scene;
 
@@ -41,7 +43,7 @@ pub fn headless(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let args = Args::parse_from(arguments);
     // Before the first step, so that a path that cannot be written costs no time.
     let dump = args.dump.as_ref().map(|path| match File::create(path) {
-        Ok(file) => Dump::new(BufWriter::new(file), args.dump_every, args.steps),
+        Ok(file) => Dump::new(BufWriter::new(file), args.dump_every, args.steps()),
         Err(error) => {
             let path = path.display();
             let message = format!("invalid value '{path}' for '--dump <FILE>': {error}");
@@ -61,11 +63,11 @@ pub fn headless(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// Simulates and prints.
 fn run(args: &Args, mut dump: Option<Dump<BufWriter<File>>>) -> io::Result<()> {
     let mut sheet = Sheet::new(args);
-    let mut times = Vec::with_capacity(args.steps as usize);
+    let mut times = Vec::with_capacity(args.steps() as usize);
     if let Some(dump) = &mut dump {
         dump.write(0, &sheet)?;
     }
-    for step in 1..=args.steps {
+    for step in 1..=args.steps() {
         times.push(sheet.step());
         if let Some(dump) = &mut dump {
             dump.write(step, &sheet)?;
@@ -75,10 +77,10 @@ fn run(args: &Args, mut dump: Option<Dump<BufWriter<File>>>) -> io::Result<()> {
         dump.finish()?;
     }
     let done = sheet.app.world().resource::<ClothStep>().steps();
-    if done != u64::from(args.steps) {
+    if done != u64::from(args.steps()) {
         return Err(io::Error::other(format!(
             "{done} steps were simulated, not {}",
-            args.steps
+            args.steps()
         )));
     }
 

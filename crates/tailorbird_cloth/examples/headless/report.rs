@@ -29,8 +29,18 @@ pub struct Report {
     step_speed_rms: f64,
     /// The largest [m/s].
     step_speed_max: f32,
+    /// The fastest free particle from step to step in the last second [m/s].
+    speed_max: f32,
+    /// The same of the whole run [m/s].
+    speed_peak: f32,
+    /// The largest stretch of the whole run [-].
+    stretch_peak: f32,
+    /// The most by which the energy of motion and height was above that at the start [J].
+    energy_gained: f64,
     /// The lowest particle [m].
     lowest_y: f32,
+    /// The highest particle [m].
+    highest_y: f32,
     /// Of the particles that are not pinned [J].
     kinetic_energy: f64,
     /// Of the particles that are not pinned, in world axes [kg m/s].
@@ -59,7 +69,7 @@ impl Report {
             particles: particles.len(),
             constraints: topology.constraint_count(),
             substeps: sheet.app.world().resource::<ClothStep>().substeps(),
-            steps: args.steps,
+            steps: args.steps(),
             ms_per_step_median: step_time.as_secs_f64() * 1e3,
             stretch_mean: stretch.mean,
             stretch_p99: stretch.p99,
@@ -68,6 +78,14 @@ impl Report {
                 / speeds.len() as f64)
                 .sqrt(),
             step_speed_max: speeds.iter().copied().fold(0.0, f32::max),
+            speed_max: sheet.peaks.speed_of_last_second(),
+            speed_peak: sheet.peaks.all.speed,
+            stretch_peak: sheet.peaks.all.stretch,
+            energy_gained: sheet.peaks.energy_gained,
+            highest_y: sheet
+                .world_positions()
+                .map(|p| p.y)
+                .fold(f32::NEG_INFINITY, f32::max),
             lowest_y: sheet
                 .world_positions()
                 .map(|p| p.y)
@@ -139,6 +157,14 @@ impl Display for Table<'_> {
                 "speed, largest",
                 format!("{:.3e} m/s", report.step_speed_max),
             ),
+            (
+                "speed, last second",
+                format!("{:.3e} m/s", report.speed_max),
+            ),
+            ("speed, peak", format!("{:.3e} m/s", report.speed_peak)),
+            ("stretch, peak", percent(report.stretch_peak)),
+            ("energy gained", format!("{:.3e} J", report.energy_gained)),
+            ("highest y", format!("{:.6} m", report.highest_y)),
             ("lowest y", format!("{:.6} m", report.lowest_y)),
             ("kinetic energy", format!("{:.3e} J", report.kinetic_energy)),
             ("momentum", format!("{x:.3e}, {y:.3e}, {z:.3e} kg m/s")),

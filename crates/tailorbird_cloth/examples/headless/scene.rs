@@ -1,17 +1,19 @@
 //! An app with one sheet.
 
-use std::{f32::consts::FRAC_PI_2, time::Duration};
+use std::time::Duration;
 
 use bevy_app::{App, FixedPostUpdate, TaskPoolOptions, TaskPoolPlugin};
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, UVec2, Vec2, Vec3};
+use bevy_math::Vec3;
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
 
 use super::{
     cli::{Args, Mesh, Pins, Solver},
+    demands::{self, Play},
     mesh,
+    peaks::{Peaks, Seen},
 };
 
 /// Width and height of the sheet [m].
@@ -26,6 +28,11 @@ pub struct Sheet {
     pub app: App,
     /// The sheet.
     pub entity: Entity,
+    /// What was seen in the steps so far.
+    pub peaks: Peaks,
+    play: Play,
+    step: u32,
+    hz: f64,
 }
 
 impl Sheet {
@@ -73,13 +80,22 @@ impl Sheet {
             ));
         }
         let entity = spawn_sheet(app.world_mut(), args);
+        let play = Play::new(app.world_mut(), args, entity);
         app.finish();
         app.cleanup();
 
         // The clock stands still: this builds the sheet and does not move it, nor does the first update.
         app.world_mut().run_schedule(FixedPostUpdate);
         app.update();
-        let mut sheet = Self { app, entity };
+        let mut sheet = Self {
+            app,
+            entity,
+            peaks: Peaks::default(),
+            play,
+            step: 0,
+            hz: args.hz,
+        };
+        sheet.peaks = Peaks::at_start(sheet.seen());
         if args.seed != 0 {
             sheet.nudge(args, timestep);
         }
@@ -88,8 +104,20 @@ impl Sheet {
 
     /// Simulates a step; how long it took.
     pub fn step(&mut self) -> Duration {
+        self.step += 1;
+        let time = (f64::from(self.step) / self.hz) as f32;
+        self.play.act(self.app.world_mut(), self.entity, time);
         self.app.update();
+        self.peaks.add(self.seen());
         self.app.world().resource::<ClothStepTime>().total
+    }
+
+    /// What is seen after a step.
+    fn seen(&self) -> Seen {
+        let gravity = self.app.world().resource::<ClothSettings>().gravity;
+        let gravity = self.get::<ClothFrame>().vector_to_frame(gravity);
+        let particles = self.get::<ClothParticles>();
+        Peaks::of_step(particles, self.get(), gravity, self.hz as f32)
     }
 
     /// A component of the sheet.
@@ -146,22 +174,15 @@ impl Sheet {
     }
 }
 
-/// The sheet: rows along +z from −1, columns along +x from −1, at y = 1.
+/// The sheet, held as asked for.
 fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
-    // A grid stands upright, its rows along −y.
-    let transform =
-        Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
-    let grid = || Cloth::grid(Vec2::splat(SIZE), UVec2::splat(args.size)).centered();
-    let cloth = match args.mesh {
-        Mesh::Grid => grid(),
-        Mesh::Shuffled => mesh::sheet(args.size, 0.0),
-        Mesh::Irregular => mesh::sheet(args.size, mesh::JITTER),
-    };
+    let (cloth, size) = (demands::cloth(args), args.scene.size());
+    let reach = 0.5 * size - mesh::NEAR;
     let pins = match (args.pins(), args.mesh) {
         (Pins::Corners, Mesh::Grid) => ClothPins::corners(GridCorner::TOP),
         (Pins::Edge, Mesh::Grid) => ClothPins::edges([GridEdge::Top]),
         (Pins::Corners, _) => {
-            let corner = Vec3::new(0.5 * SIZE, 0.5 * SIZE, 0.0);
+            let corner = (0.5 * size).extend(0.0);
             let [left, right] = [corner * Vec3::new(-1.0, 1.0, 1.0), corner];
             let within = |center| PinSelection::Within {
                 center,
@@ -171,7 +192,10 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
                 .with(ClothPin::new(within(left)))
                 .with(ClothPin::new(within(right)))
         }
-        (Pins::Edge, _) => ClothPins::matching(&cloth, |p| p.y > 0.5 * SIZE - mesh::NEAR),
+        (Pins::Edge, _) => ClothPins::matching(&cloth, |p| p.y > reach.y),
+        (Pins::Border, _) => {
+            ClothPins::matching(&cloth, |p| p.x.abs() > reach.x || p.y.abs() > reach.y)
+        }
         (Pins::None, _) => ClothPins::default(),
     };
     let solver = match args.solver {
@@ -185,7 +209,7 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
             solver,
             pins,
             ClothSleep::never(),
-            transform,
+            Transform::from_isometry(demands::place(args.scene)),
         ))
         .id()
 }
