@@ -11,6 +11,7 @@ use bevy_math::{UVec2, Vec2, Vec3};
 use tracing::warn;
 
 use crate::{
+    attachment::AttachedParticles,
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::ClothFrame,
@@ -89,6 +90,7 @@ pub fn build_topology(
         Ref<Cloth>,
         &ClothFrame,
         &mut ClothTopology,
+        &AttachedParticles,
         &mut ClothParticles,
         &mut ClothStatus,
     )>,
@@ -96,7 +98,7 @@ pub fn build_topology(
     commands: ParallelCommands,
 ) {
     let mut built = false;
-    for (entity, cloth, frame, mut topology, mut particles, mut status) in &mut cloths {
+    for (entity, cloth, frame, mut topology, attached, mut particles, mut status) in &mut cloths {
         let outdated = topology.revision == 0 || topology.scale != frame.scale();
         let failed_before = !status.is_ok_for(ErrorSource::Shape) && !cloth.is_changed();
         if !frame.placed || !(cloth.is_changed() || outdated && !failed_before) {
@@ -105,8 +107,10 @@ pub fn build_topology(
         built = true;
         match shared.get(&cloth.shape, frame.scale()) {
             Ok(new) => {
-                *particles = keep_shape(&topology, &new, &particles)
-                    .unwrap_or_else(|| ClothParticles::at_rest(&new));
+                if cloth.is_changed() || !particles.grow(&topology, &new, attached) {
+                    *particles = keep_shape(&topology, &new, &particles)
+                        .unwrap_or_else(|| ClothParticles::at_rest(&new));
+                }
                 if !new.report.is_clean() {
                     warn!("{entity}: {}", new.report);
                 }
@@ -122,6 +126,60 @@ pub fn build_topology(
     }
     if built {
         shared.forget();
+    }
+}
+
+impl ClothParticles {
+    /// Becomes as large as the new topology of a cloth whose scale alone changed, in the shape and motion that it has. Returns whether
+    /// it did: not where it has no particles yet.
+    ///
+    /// One that is held in its frame grows about the frame's origin, one that is attached about the middle of what is held, one that is
+    /// free about its own: these may be anywhere.
+    fn grow(&mut self, old: &Topology, new: &Topology, attached: &AttachedParticles) -> bool {
+        let count = self.len();
+        let ratio = new.scale / old.scale;
+        if count == 0 || count != new.particles() || !ratio.is_finite() {
+            return false;
+        }
+        let about = if self.pins.is_empty() && self.limited.is_empty() {
+            let at = |i: u32| self.position.get(i as usize);
+            let held = || attached.particles().filter(|i| (*i as usize) < count);
+            if held().next().is_some() {
+                held().map(at).sum::<Vec3>() / held().count() as f32
+            } else {
+                (0..count as u32).map(at).sum::<Vec3>() / count as f32
+            }
+        } else {
+            Vec3::ZERO
+        };
+        // Threads of a mesh may be found in another order at another scale.
+        let moved = |i: u32| {
+            let given = new.order.given(i);
+            (new.order.stored(given), self.order.stored(given))
+        };
+        let same = (0..count as u32).all(|i| moved(i).0 == moved(i).1);
+        let grown = |points: &Points| -> Points {
+            let from = (0..count as u32).map(|i| moved(i).1 as usize);
+            from.map(|i| about + ratio * (points.get(i) - about))
+                .collect()
+        };
+        let [position, previous, step] =
+            [&self.position, &self.previous_position, &self.step_position].map(grown);
+        if !same {
+            *self = Self {
+                substep_seconds: self.substep_seconds,
+                ..Self::at_rest(new)
+            };
+        }
+        (self.position, self.previous_position) = (position, previous);
+        self.step_position = step;
+        self.lost_displacement.fill(Vec3::ZERO);
+        self.grown_about = about;
+        for pin in self.pins.iter_mut().chain(&mut self.grabbed) {
+            pin.target *= ratio;
+        }
+        self.calm.clear();
+        true
     }
 }
 

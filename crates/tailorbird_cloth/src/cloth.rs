@@ -17,6 +17,7 @@ use crate::{
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
     pins::ClothPins,
+    sampling::SampledMotion,
     sleep::{ClothRest, ClothSeen, ClothSleep},
     solver::ClothSolver,
     tethers::ClothTethers,
@@ -26,7 +27,8 @@ use crate::{
 
 /// A cloth: its rest shape, in the entity's own space. Brings every other component it needs.
 ///
-/// Change it at run time and the cloth is rebuilt; a grid that stays a grid keeps the shape it has.
+/// Change it at run time and the cloth is rebuilt; a grid that stays a grid keeps the shape it has. A cloth whose entity's scale changes
+/// keeps its shape and its motion, scaled, whatever it is.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -51,6 +53,7 @@ use crate::{
     ClothParticles,
     ClothNormals,
     ClothBounds,
+    SampledMotion,
     Transform
 )]
 pub struct Cloth {

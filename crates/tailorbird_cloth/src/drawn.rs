@@ -37,8 +37,8 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 
 use crate::{
-    attachment::AttachedParticles, frame::split, particles::ClothParticles, points::Points,
-    topology::Topology,
+    attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles,
+    points::Points, topology::Topology,
 };
 
 /// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
@@ -122,7 +122,7 @@ impl ClothDrawnHolds {
             self.weigh(topology, particles, attached);
         }
         self.offsets.clear();
-        let Ok((frame, _)) = split(place) else {
+        let Ok((frame, _)) = split_mirrored(place, topology.scale) else {
             return;
         };
         if self.held.is_empty() || particles.len() != topology.particles() {

@@ -5,13 +5,14 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
-use bevy_transform::{components::GlobalTransform, helper::TransformHelper};
+use bevy_transform::components::{GlobalTransform, Transform};
 
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     inertia::{ClothInertia, Felt, TeleportMode},
     particles::ClothParticles,
+    sampling::{SampledPoses, excess},
     solver::kernels::rigid,
     stages::{ClothStages, Substep, for_each_awake},
     step::ClothStep,
@@ -44,9 +45,11 @@ pub struct ClothFrame {
     /// From where the last substep began to where the frame is now, as the particles were taken.
     #[reflect(ignore)]
     taken: Option<Taken>,
-    /// How far the entity was put elsewhere in this step.
+    /// How far the entity was put elsewhere before this step: it was told to, it hopped, or moved while the cloth did not simulate.
     #[reflect(ignore)]
     jump: Option<Isometry3d>,
+    /// What was felt of the last step [m/s].
+    velocity: Vec3,
     /// Whether the cloth goes where its entity goes, and feels nothing of it.
     pub(crate) carries: bool,
     asked: Option<TeleportMode>,
@@ -74,6 +77,7 @@ impl Default for ClothFrame {
             felt: Felt::default(),
             taken: None,
             jump: None,
+            velocity: Vec3::ZERO,
             carries: false,
             asked: None,
             teleported: None,
@@ -119,9 +123,21 @@ impl ClothFrame {
     }
 
     /// The entity is put elsewhere, and its cloth with it: whatever way the entity goes until the next step, the cloth does not
-    /// feel it. [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done.
+    /// feel it. So with its parents, and with whatever else hangs on those.
+    /// [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done. What holds the cloth without being a parent is told by
+    /// [`SampledMotion::teleport`](crate::sampling::SampledMotion::teleport).
     pub fn teleport(&mut self, mode: TeleportMode) {
         self.asked = Some(mode);
+    }
+
+    /// Whether [`Self::teleport`] was called since the last step.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// How the entity was turned where it was put elsewhere before this step; none where it was not.
+    pub(crate) fn jump_turn(&self) -> Option<Quat> {
+        self.jump.map(|jump| jump.rotation)
     }
 
     /// What became of the cloth, where it was put elsewhere in this step.
@@ -208,29 +224,39 @@ impl ClothFrame {
         }
     }
 
-    /// Goes to a place within a step of this length \[s\], for the world and for the cloth.
-    fn place(&mut self, to: Isometry3d, [world_seconds, seconds]: [f32; 2]) {
+    /// Goes from one place to another within a step of this length \[s\], for the world and for the cloth; infinite where the cloth
+    /// does not simulate. `holds` is whether it holds the cloth. What it is from where the last step ended to where this one starts carries the cloth.
+    fn place(
+        &mut self,
+        [from, to]: [Isometry3d; 2],
+        (teleported, holds): (bool, bool),
+        seconds: [f32; 2],
+    ) {
+        let [world_seconds, seconds] = seconds;
         let inertia = self.inertia;
-        self.start = self.end;
-        self.end = to;
-        self.jump = None;
+        let seen = if self.placed { self.end } else { to };
+        (self.start, self.end) = (if self.placed { from } else { to }, to);
+        self.placed = true;
         self.taken = None;
-        if !self.placed {
-            self.start = to;
-            self.placed = true;
-        }
-        let far = self.start != to && inertia.is_teleport(self.start, to, world_seconds);
-        let mode = self
-            .asked
-            .take()
-            .or_else(|| far.then_some(inertia.teleport));
+        let asked = self.asked.take();
+        let far = from != to && inertia.is_teleport(from, to, world_seconds);
+        let mode = asked.or_else(|| (far || teleported).then_some(inertia.teleport));
         if mode.is_some() {
             self.teleported = mode;
         }
-        if mode.is_some() || self.carries {
-            self.jump = Some(to * self.start.inverse());
+        if asked.is_some() || far || self.carries || world_seconds.is_infinite() {
             self.start = to;
         }
+        if world_seconds.is_finite() {
+            let turn = self.start.rotation * seen.rotation.inverse();
+            let way = Vec3::from(to.translation - self.start.translation);
+            let (excess, velocity) = excess(turn * self.velocity, way, world_seconds);
+            self.velocity = if holds { velocity } else { way / world_seconds };
+            if holds && excess != Vec3::ZERO {
+                self.start.translation += Vec3A::from(excess);
+            }
+        }
+        self.jump = (self.start != seen).then(|| self.start * seen.inverse());
         self.felt = inertia.felt(self.start, to, world_seconds, seconds);
         self.current = self.start;
         self.offset = Vec3::ZERO;
@@ -261,6 +287,45 @@ pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Vec3), C
     Ok((Isometry3d::new(translation, rotation.normalize()), scale))
 }
 
+/// [`split`] with signs of the scale as they are wanted, where the transform mirrors as that does, else as in `known` where that does,
+/// else so that it is turned as little as it may be against `rotation`. A matrix does not tell them.
+fn split_like(
+    transform: &GlobalTransform,
+    wanted: Vec3,
+    (known, rotation): (Vec3, Quat),
+) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
+    let (place, scale) = split(transform)?;
+    let ways = [Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+        if axis == Vec3::ONE {
+            (place.rotation, scale)
+        } else {
+            // Half a turn about one axis mirrors the other two.
+            let turn = Quat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
+            (place.rotation * turn, scale * (2.0 * axis - 1.0))
+        }
+    });
+    let mirrors = |like: Vec3| {
+        let signs = like.signum();
+        ways.into_iter().find(|(_, scale)| scale.signum() == signs)
+    };
+    let near = |way: &(Quat, Vec3)| way.0.dot(rotation).abs();
+    let (rotation, scale) = mirrors(wanted)
+        .or_else(|| mirrors(known))
+        .unwrap_or_else(|| {
+            let nearest = |a: (Quat, Vec3), b| if near(&b) > near(&a) + 1e-3 { b } else { a };
+            ways.into_iter().fold(ways[0], nearest)
+        });
+    Ok((Isometry3d::new(place.translation, rotation), scale))
+}
+
+/// [`split`], with the scale's signs as given.
+pub(crate) fn split_mirrored(
+    transform: &GlobalTransform,
+    signs: Vec3,
+) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
+    split_like(transform, signs, (signs, Quat::IDENTITY))
+}
+
 /// What is wrong with a world transform whose axes are not at right angles.
 fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
     /// Of rounding, several parents deep.
@@ -277,8 +342,18 @@ fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
 /// it without the shear.
 pub fn prepare_frames(
     step: Res<ClothStep>,
-    helper: TransformHelper,
-    mut cloths: Query<(Entity, &mut ClothFrame, Ref<ClothInertia>, &mut ClothStatus), With<Cloth>>,
+    poses: SampledPoses,
+    mut cloths: Query<
+        (
+            Entity,
+            &Transform,
+            &mut ClothFrame,
+            Ref<ClothInertia>,
+            &ClothParticles,
+            &mut ClothStatus,
+        ),
+        With<Cloth>,
+    >,
     commands: ParallelCommands,
 ) {
     // A pause keeps what moves meanwhile from being felt, and from being a teleport.
@@ -287,7 +362,7 @@ pub fn prepare_frames(
     } else {
         [f32::INFINITY; 2]
     };
-    for (entity, mut frame, inertia, mut status) in &mut cloths {
+    for (entity, own, mut frame, inertia, particles, mut status) in &mut cloths {
         if inertia.is_changed() {
             let errors = inertia.errors();
             if errors.is_empty() {
@@ -295,19 +370,28 @@ pub fn prepare_frames(
             }
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Inertia, errors);
         }
-        let Ok(transform) = helper.compute_global_transform(entity) else {
+        let Ok(pose) = poses.get(entity) else {
             continue;
         };
-        let error = match split(&transform) {
-            Ok((isometry, scale)) => {
+        let holds = !particles.pins.is_empty() || !particles.limited.is_empty();
+        let how = (pose.teleported, holds);
+        let known = (frame.scale, frame.end.rotation);
+        let ends = [&pose.start, &pose.end].map(|end| split_like(end, own.scale, known));
+        let error = match ends {
+            [Ok((start, _)), Ok((end, scale))] => {
                 frame.set_scale(scale);
-                frame.place(isometry, seconds);
-                check_shear(&transform)
+                frame.place([start, end], how, seconds);
+                check_shear(&pose.end)
             }
-            Err(error) => {
+            [Err(_), Ok((end, scale))] => {
+                frame.set_scale(scale);
+                frame.place([end; 2], how, seconds);
+                check_shear(&pose.end)
+            }
+            [_, Err(error)] => {
                 let stay = frame.end;
                 if frame.placed {
-                    frame.place(stay, seconds);
+                    frame.place([stay; 2], (false, holds), seconds);
                 }
                 Some(error)
             }

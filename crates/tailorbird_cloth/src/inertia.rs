@@ -25,7 +25,7 @@
 //! # }
 //! ```
 //!
-//! An entity that is put elsewhere takes its cloth along: where it moves faster than a threshold, or where the game says so.
+//! An entity that is put elsewhere takes its cloth along: where it [hops](crate::sampling#hops), or where the game says so.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -82,7 +82,8 @@ pub struct ClothInertia {
         serde(deserialize_with = "crate::unbounded::number")
     )]
     pub max_angular_speed: f32,
-    /// An entity that moves faster than this [m/s] within one step is taken to be put elsewhere.
+    /// An entity that moves faster than this [m/s] within one step is taken to be put elsewhere, however fast it moved before; beside what
+    /// [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) sees. Infinite by default.
     #[cfg_attr(
         feature = "serialize",
         serde(deserialize_with = "crate::unbounded::number")
@@ -122,7 +123,7 @@ pub struct ClothTeleported {
 }
 
 impl Default for ClothInertia {
-    /// All of the motion, without limits, up to 200 m/s.
+    /// All of the motion, without limits but that of [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed).
     fn default() -> Self {
         Self {
             linear: 1.0,
@@ -130,7 +131,7 @@ impl Default for ClothInertia {
             centrifugal: 1.0,
             max_speed: f32::INFINITY,
             max_angular_speed: f32::INFINITY,
-            teleport_speed: 200.0,
+            teleport_speed: f32::INFINITY,
             teleport_angle: f32::INFINITY,
             teleport: TeleportMode::KeepShape,
         }

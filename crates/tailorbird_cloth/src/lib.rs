@@ -73,6 +73,7 @@ pub mod points;
 pub mod query;
 pub mod reaction;
 mod runner;
+pub mod sampling;
 pub mod schedule;
 pub mod settings;
 pub mod sleep;
@@ -117,6 +118,7 @@ pub mod prelude {
         plugin::ClothPlugin,
         query::ClothHit,
         reaction::ClothPinForces,
+        sampling::{SampledMotion, Teleported},
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
         sleep::{ClothRest, ClothSeen, ClothSleep},

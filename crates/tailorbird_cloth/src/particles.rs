@@ -76,6 +76,8 @@ pub struct ClothParticles {
     /// Particles that are pulled along with the grabbed one.
     #[reflect(ignore)]
     pub(crate) pulled: Vec<Pulled>,
+    /// The point that stayed where it was when the scale changed last, in the cloth's frame \[m\].
+    pub(crate) grown_about: Vec3,
     /// The time that `position` − `previous_position` took \[s\].
     pub(crate) substep_seconds: f32,
 }

@@ -1,6 +1,9 @@
 //! The plugin of this crate.
 
-use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_app::{
+    App, FixedFirst, FixedLast, FixedMainScheduleOrder, FixedPostUpdate, Plugin, RunFixedMainLoop,
+    RunFixedMainLoopSystems,
+};
 use bevy_ecs::{
     intern::Interned,
     message::signal_message_update_system,
@@ -23,11 +26,15 @@ use crate::{
     frame::{advance_frames, prepare_frames},
     grab::apply_grab,
     inertia::reset_teleported,
-    motion::prepare_motion,
+    motion::{begin_fixed_targets, end_fixed_targets, prepare_motion, see_targets},
     normals::recompute_normals,
     pins::apply_pins,
     prelude::*,
     runner::{OwnStages, simulate_cloths},
+    sampling::{
+        FixedLoopBegins, FixedLoopEnds, FrameClock, begin_fixed_step, end_fixed_step,
+        pass_on_teleports, sample_motion, sample_parents, see_frame,
+    },
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
     sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
     slow_build::warn_of_slow_build,
@@ -63,6 +70,7 @@ impl Default for ClothPlugin {
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
         register_types(app);
+        look_at_motion(app);
         app.init_resource::<ClothSettings>()
             .init_resource::<ClothStep>()
             .init_resource::<ClothStepTime>()
@@ -103,6 +111,7 @@ impl Plugin for ClothPlugin {
             (
                 start_clock,
                 begin_step,
+                (sample_parents, pass_on_teleports, sample_motion).chain(),
                 rest_unseen,
                 prepare_frames,
                 build_topology,
@@ -192,6 +201,32 @@ impl Plugin for ClothPlugin {
     }
 }
 
+/// Notes in each frame, and at both ends of each step of the fixed loop, where things are.
+fn look_at_motion(app: &mut App) {
+    app.init_resource::<FrameClock>()
+        .add_message::<Teleported>()
+        .add_systems(
+            RunFixedMainLoop,
+            (sample_parents, pass_on_teleports, see_frame, see_targets)
+                .chain()
+                .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+        );
+    add_part(
+        app,
+        FixedLoopBegins,
+        (begin_fixed_step, begin_fixed_targets).chain(),
+    );
+    add_part(
+        app,
+        FixedLoopEnds,
+        (end_fixed_step, end_fixed_targets).chain(),
+    );
+    if let Some(mut order) = app.world_mut().get_resource_mut::<FixedMainScheduleOrder>() {
+        order.insert_after(FixedFirst, FixedLoopBegins);
+        order.insert_after(FixedLast, FixedLoopEnds);
+    }
+}
+
 /// Puts systems into a schedule of their own, on one thread: most take less time than a thread to wake.
 fn add_part<M>(
     app: &mut App,
@@ -218,6 +253,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothMotionConstraints>()
         .register_type::<ClothMotionTargets>()
         .register_type::<crate::motion::MotionState>()
+        .register_type::<crate::motion::TargetSamples>()
         .register_type::<ClothPinForces>()
         .register_type::<ClothMaterial>()
         .register_type::<ClothPins>()
@@ -242,6 +278,8 @@ fn register_types(app: &mut App) {
         .register_type::<ClothLayers>()
         .register_type::<crate::collider::ColliderPose>()
         .register_type::<ClothSettings>()
+        .register_type::<SampledMotion>()
+        .register_type::<Teleported>()
         .register_type::<ClothStep>()
         .register_type::<ClothStepTime>()
         .register_type::<Wind>()

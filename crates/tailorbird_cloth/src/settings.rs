@@ -26,6 +26,7 @@
 //! | [`iterations`](ClothSettings::iterations) | 1 | nearly in proportion; substeps are the better use of it |
 //! | [`instruction_set`](ClothSettings::instruction_set) | the best of the machine | 128²: 1.5 ms with AVX-512, 2.6 AVX2, 5.0 SSE2, 5.5 scalar; the same bits |
 //! | [`time_scale`](ClothSettings::time_scale) | 1 | beyond 1 as many times as many substeps |
+//! | [`teleport_speed`](ClothSettings::teleport_speed) | 30 m/s | nothing |
 //! | [`paused`](ClothSettings::paused) | no | a pause costs nothing to speak of |
 //!
 //! How long a step lasts is not set here but by the schedule: `Time::<Fixed>::from_hz(60.0)`; Bevy's own default is 64 Hz. Steps of half
@@ -33,9 +34,6 @@
 //!
 //! # Traps
 //!
-//! - **`Time<Virtual>::pause()`** stops the steps, and what is moved meanwhile moves at once in the first step afterwards: cloth whips. Where
-//!   things are moved during a pause, use [`paused`](ClothSettings::paused) in its place, which carries cloth along, or tell each cloth by
-//!   [`ClothFrame::teleport`](crate::frame::ClothFrame::teleport) before time goes on.
 //! - **[`time_scale`](ClothSettings::time_scale)** is for cloth alone. Slow motion of a whole game is `Time<Virtual>::set_relative_speed`.
 //! - **A system in [`ClothSubstep`](crate::schedule::ClothSubstep)** makes all cloths take as many substeps as the one that needs most.
 //! - Gravity, substeps and iterations that change **wake** all cloths.
@@ -72,7 +70,18 @@ pub struct ClothSettings {
     /// For cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
     /// everything.
     pub time_scale: f32,
-    /// Stops the simulation. Cloths stay as they are.
+    /// What is put elsewhere, and what moves [m/s]; 30 by default, infinity where nothing is. A way whose velocity differs from the one
+    /// before by more than that one's magnitude and this is a hop, of a cloth's entity, of what holds it, of a collider, of a target of a
+    /// motion constraint: cloth is taken along, and feels the motion before it alone. See [`sampling`](crate::sampling#hops).
+    ///
+    /// Lower ones see shorter hops, and take motion that begins at once for one: a blow, a kick. The way of a hop is that much times
+    /// the length of a frame, or of a step for what moves in the fixed loop: at 60 a second half a metre.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
+    pub teleport_speed: f32,
+    /// Stops the simulation. Cloths stay as they are, and are carried along by what holds them.
     pub paused: bool,
     /// While paused: how many steps to do all the same. Counts down.
     pub pending_steps: u32,
@@ -129,6 +138,7 @@ impl Default for ClothSettings {
             iterations: 1,
             instruction_set: InstructionSet::Auto,
             time_scale: 1.0,
+            teleport_speed: Self::TELEPORT_SPEED,
             paused: false,
             pending_steps: 0,
         }
@@ -146,6 +156,18 @@ impl ClothSettings {
 
     /// The largest time scale [-].
     pub const LARGEST_TIME_SCALE: f32 = 10.0;
+
+    /// [`teleport_speed`](Self::teleport_speed) unless set [m/s].
+    pub const TELEPORT_SPEED: f32 = 30.0;
+
+    /// The teleport speed, or the default where it is wrong [m/s].
+    pub(crate) fn valid_teleport_speed(&self) -> f32 {
+        if self.teleport_speed >= 0.0 {
+            self.teleport_speed
+        } else {
+            Self::TELEPORT_SPEED
+        }
+    }
 
     /// What is wrong with these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
@@ -169,6 +191,13 @@ impl ClothSettings {
                 self.time_scale,
                 |v| (0.0..=Self::LARGEST_TIME_SCALE).contains(&v),
                 "0 to 10 [-]",
+            ),
+            // Infinity is no limit.
+            ClothErrorKind::number(
+                "ClothSettings.teleport_speed",
+                self.teleport_speed,
+                |v| v >= 0.0,
+                "at least 0 [m/s]",
             ),
         ]
         .into_iter()

@@ -1,7 +1,7 @@
 //! What the attachments of a cloth hold during a step.
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Quat, Vec3};
+use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 
@@ -59,8 +59,10 @@ pub(super) struct Body {
     pub start: Pose,
     /// At its end.
     pub end: Pose,
-    /// Where it was put elsewhere from, where it did not move.
+    /// Where it was put elsewhere from, before it moved on from `start`.
     pub jumped: Option<Pose>,
+    /// What of its way in this step is too sudden for the cloth to feel \[m\].
+    pub excess: Vec3,
     /// What its springs pulled with, summed over the substeps, in world axes \[N\].
     pub pulled: Vec3,
     /// Over how many substeps.
@@ -76,8 +78,9 @@ pub(super) struct Hold {
     pub body: u32,
     /// In the entity's own space \[m\].
     pub point: Vec3,
-    /// From where the start of the step has the point to where the particle is, in the cloth's frame \[m\].
-    pub gap: Vec3,
+    /// From where the body has the point to where the particle is, at the start and at the end of the step, in the cloth's
+    /// frame \[m\].
+    pub gap: [Vec3; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -105,8 +108,20 @@ impl Spring {
 /// A cloth that sleeps wakes where what holds it is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
 
+/// A particle that is not where it is held goes there no faster than this [m/s].
+const CATCHES_UP: f32 = 30.0;
+
 /// A point that goes no further in a step stands still \[m\].
 const STANDS: f32 = 1e-5;
+
+/// The motion of a body, as seen from the frame at the start of the step. With the cloth's entity it may have been put elsewhere already.
+fn motion_in(frame: &ClothFrame, from: &Pose, to: &Pose) -> Isometry3d {
+    let from = from.at(frame.start_for(from.place(), to.place()));
+    if from == *to {
+        return Isometry3d::IDENTITY;
+    }
+    motion(&from, to, frame.isometry())
+}
 
 impl AttachedParticles {
     /// Whether nothing is attached.
@@ -131,6 +146,12 @@ impl AttachedParticles {
     pub fn springs(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
         let given = |spring: &Spring| self.order.given(spring.hold.particle);
         self.springs.iter().map(given)
+    }
+
+    /// All particles that are held, in storage order.
+    pub(crate) fn particles(&self) -> impl Iterator<Item = u32> + '_ {
+        let springs = self.springs.iter().map(|spring| &spring.hold);
+        self.rigid.iter().chain(springs).map(|hold| hold.particle)
     }
 
     /// Different whenever other particles are held, or at other points.
@@ -179,7 +200,7 @@ impl AttachedParticles {
             particle,
             body: self.bodies.len() as u32,
             point,
-            gap: Vec3::ZERO,
+            gap: [Vec3::ZERO; 2],
         };
         match compliances {
             None => self.rigid.extend(points.iter().map(hold)),
@@ -194,7 +215,12 @@ impl AttachedParticles {
 
     /// When all are added: makes the rigid ones kinematic, and notes where they start. Returns whether others are held than
     /// before.
-    pub(super) fn finish(&mut self, frame: &ClothFrame, particles: &mut ClothParticles) -> bool {
+    pub(super) fn finish(
+        &mut self,
+        frame: &ClothFrame,
+        particles: &mut ClothParticles,
+        seconds: f32,
+    ) -> bool {
         self.order = particles.order.clone();
         self.rigid
             .retain(|hold| !particles.is_pinned(self.order.given(hold.particle) as usize));
@@ -223,11 +249,8 @@ impl AttachedParticles {
                 furthest = furthest.max(moved.length());
             } else {
                 let start = body.start.seen_from(frame.start).apply(hold.point);
-                hold.gap = if body.jumped.is_some() {
-                    Vec3::ZERO
-                } else {
-                    at(hold) - start
-                };
+                let gap = at(hold) - start;
+                hold.gap = [gap, gap - gap.clamp_length_max(CATCHES_UP * seconds)];
                 let end = body.end.seen_from(frame.end).apply(hold.point);
                 furthest = furthest.max(end.distance(at(hold)));
             }
@@ -257,9 +280,6 @@ impl AttachedParticles {
         } else {
             substep.fractions().1
         };
-        if substep.index == 0 {
-            self.jump(frame, particles);
-        }
         let mut map: Option<(u32, Map)> = None;
         for hold in &self.rigid {
             let map = match map {
@@ -273,18 +293,9 @@ impl AttachedParticles {
             if i >= particles.len() {
                 continue;
             }
-            let to = map.apply(hold.point) + hold.gap * (1.0 - fraction);
+            let [gap, left] = hold.gap;
+            let to = map.apply(hold.point) + gap * (1.0 - fraction) + left * fraction;
             particles.position.set(i, to);
-            if substep.index == 0 && self.bodies[hold.body as usize].jumped.is_some() {
-                particles.previous_position.set(i, to);
-            }
-        }
-    }
-
-    /// Puts the whole cloth elsewhere with its motion, where all that holds it was.
-    fn jump(&self, frame: &ClothFrame, particles: &mut ClothParticles) {
-        if self.bodies.iter().all(|body| body.jumped.is_some()) {
-            self.carry(frame, particles);
         }
     }
 
@@ -294,37 +305,70 @@ impl AttachedParticles {
         frame: &ClothFrame,
         particles: &ClothParticles,
     ) -> Option<Isometry3d> {
-        let held_elsewhere = !particles.pins.is_empty() || !particles.limited.is_empty();
-        let body = self.bodies.first().filter(|_| !held_elsewhere)?;
-        let was = body.jumped.unwrap_or(body.start);
-        // With its entity it may have been put elsewhere already.
-        let was = was.at(frame.start_for(was.place(), body.end.place()));
-        if was == body.end {
-            return Some(Isometry3d::IDENTITY);
-        }
-        Some(motion(&was, &body.end, frame.isometry()))
+        let body = self.leader(particles)?;
+        Some(motion_in(frame, &body.start, &body.end))
     }
 
-    /// Whether something that holds the cloth was put elsewhere in this step.
+    /// The way of the first body that is not felt, as seen from the frame at the start of the step, where nothing else holds the
+    /// cloth.
+    fn unfelt(&self, frame: &ClothFrame, particles: &ClothParticles) -> Option<Isometry3d> {
+        let body = self.leader(particles)?;
+        Some(motion_in(frame, body.jumped.as_ref()?, &body.start))
+    }
+
+    /// The body that leads a cloth which nothing else holds.
+    fn leader(&self, particles: &ClothParticles) -> Option<&Body> {
+        let held_elsewhere = !particles.pins.is_empty() || !particles.limited.is_empty();
+        self.bodies.first().filter(|_| !held_elsewhere)
+    }
+
+    /// Whether something that holds the cloth was put elsewhere before this step.
     pub(crate) fn has_jumped(&self) -> bool {
         self.bodies.iter().any(|body| body.jumped.is_some())
     }
 
+    /// Lets what holds the cloth carry it along by what of its way is too sudden, where that is so of all.
+    pub(super) fn soften(&mut self, particles: &ClothParticles) {
+        let sudden = |body: &Body| body.excess != Vec3::ZERO;
+        if self.leader(particles).is_none() || !self.bodies.iter().all(sudden) {
+            return;
+        }
+        let count = self.bodies.len() as f32;
+        let way = self.bodies.iter().map(|body| body.excess).sum::<Vec3>() / count;
+        for body in &mut self.bodies {
+            let place = body.start.place();
+            body.jumped.get_or_insert(body.start);
+            let from = Isometry3d::new(place.translation + Vec3A::from(way), place.rotation);
+            body.start = body.start.at(from);
+        }
+    }
+
+    /// Takes the whole cloth along, with its motion, where all that holds it was put elsewhere. Returns whether it was.
+    pub(super) fn take_along(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> bool {
+        self.bodies.iter().all(|body| body.jumped.is_some())
+            && self.carry(frame, particles).is_some()
+    }
+
     /// Moves the cloth and its motion along with what holds it. Returns how it turned, where it moved.
     pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> Option<Quat> {
-        let motion = self.motion_of_all(frame, particles)?;
-        if motion == Isometry3d::IDENTITY {
+        let motion = self.unfelt(frame, particles)?;
+        let (way, turn) = (motion.translation.length(), motion.rotation.xyz().length());
+        if way.max(turn) < STANDS {
             return None;
         }
-        for i in 0..particles.len() {
-            let ClothParticles {
-                position,
-                previous_position,
-                lost_displacement,
-                ..
-            } = particles;
-            position.set(i, motion * position.get(i));
-            previous_position.set(i, motion * previous_position.get(i));
+        let ClothParticles {
+            position,
+            previous_position,
+            step_position,
+            lost_displacement,
+            ..
+        } = particles;
+        for points in [position, previous_position, step_position] {
+            for i in 0..points.len() {
+                points.set(i, motion * points.get(i));
+            }
+        }
+        for i in 0..lost_displacement.len() {
             lost_displacement.set(i, motion.rotation * lost_displacement.get(i));
         }
         Some(motion.rotation)

@@ -70,6 +70,7 @@ pub use prepare::{AttachmentState, break_attachments, prepare_attachments};
 use crate::{
     error::{ClothErrorKind, ClothStatus},
     pins::{GridCorner, GridEdge, PinSelection},
+    sampling::SampledMotion,
 };
 
 /// Holds particles of a cloth at an entity. Needs [`AttachmentOf`] and [`AttachedTo`]. See the [module](self).
@@ -133,6 +134,7 @@ pub struct AttachedTo(pub Entity);
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[relationship_target(relationship = AttachedTo)]
+#[require(SampledMotion)]
 pub struct Attachments(Vec<Entity>);
 
 /// With which force the cloth pulls at what holds an attachment, where that has a compliance or a break force; 0 for a rigid

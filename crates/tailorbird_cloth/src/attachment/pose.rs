@@ -1,6 +1,6 @@
 //! Where an entity is, with its scale and shear.
 
-use bevy_math::{Isometry3d, Mat3, Vec3};
+use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use bevy_transform::components::GlobalTransform;
 
 use crate::{error::ClothErrorKind, frame::split};
@@ -77,9 +77,21 @@ impl Pose {
         Map { matrix, shift }
     }
 
-    /// How far it is between the two \[m\].
-    pub fn distance(&self, other: &Self) -> f32 {
-        self.place.translation.distance(other.place.translation)
+    /// How far it is to another \[m\].
+    pub fn way_to(&self, to: &Self) -> Vec3 {
+        Vec3::from(to.place.translation - self.place.translation)
+    }
+
+    /// How much another is turned.
+    pub fn turn_to(&self, to: &Self) -> Quat {
+        to.place.rotation * self.place.rotation.inverse()
+    }
+
+    /// Whether another pose is larger by about as much as a cloth that grows by this.
+    pub fn grows_to(&self, to: &Self, ratio: Vec3) -> bool {
+        let growth = to.stretch.determinant() / self.stretch.determinant();
+        let (is, should) = (growth.abs().ln(), ratio.element_product().abs().ln());
+        (is - should).abs() < 0.1 * should.abs()
     }
 }
 
@@ -99,7 +111,6 @@ pub(super) fn motion(from: &Pose, to: &Pose, frame: Isometry3d) -> Isometry3d {
 
 #[cfg(test)]
 mod tests {
-    use bevy_math::Quat;
     use bevy_transform::components::Transform;
     use proptest::prelude::*;
 

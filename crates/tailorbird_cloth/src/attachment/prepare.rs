@@ -3,7 +3,7 @@
 use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use bevy_transform::helper::{ComputeGlobalTransformError, TransformHelper};
+use bevy_transform::components::GlobalTransform;
 
 use super::{
     AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
@@ -11,10 +11,11 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    collider::ClothCollider,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::ClothFrame,
+    inertia::{ClothTeleported, TeleportMode},
     particles::ClothParticles,
+    sampling::{SampledPose, SampledPoses, excess},
     sleep::ClothRest,
     step::ClothStep,
     topology::{ClothTopology, Topology},
@@ -32,9 +33,18 @@ pub struct AttachmentState {
     /// Of each particle [m/N]; none for a rigid attachment.
     compliances: Option<Vec<f32>>,
     target: Option<Entity>,
-    /// Where the target was at the end of the step before.
+    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
     #[reflect(ignore)]
     pose: Option<Pose>,
+    /// Where the target was seen last.
+    #[reflect(ignore)]
+    seen: Option<Pose>,
+    /// Of the target in the last step, as far as it was felt [m/s].
+    velocity: Vec3,
+    /// The scale of the cloth that the points were found for.
+    scale: Vec3,
+    /// How many particles that had.
+    particles: usize,
     /// Of the topology.
     revision: u64,
     /// Whether the particles are still to be found.
@@ -50,7 +60,7 @@ pub struct AttachmentState {
 /// held where the target was.
 pub fn prepare_attachments(
     step: Res<ClothStep>,
-    helper: TransformHelper,
+    poses: SampledPoses,
     mut cloths: Query<
         (
             Entity,
@@ -91,7 +101,7 @@ pub fn prepare_attachments(
         if particles.is_empty() || list.is_none() && attached.is_empty() {
             continue;
         }
-        let mut changed = false;
+        let (mut changed, mut teleported) = (false, false);
         let bodies_before = attached.bodies.len();
         attached.clear();
         for attachment in list.into_iter().flat_map(RelationshipTarget::iter) {
@@ -122,19 +132,22 @@ pub fn prepare_attachments(
                 ClothStatus::update(&mut status, entity, &commands, source, errors);
                 continue;
             };
-            let pose = match helper.compute_global_transform(target) {
-                Ok(transform) => Pose::of(&transform),
-                Err(ComputeGlobalTransformError::MissingTransform(entity)) => {
-                    Err(ClothErrorKind::NoTransform { value: entity })
-                }
-                // It was despawned in this frame, and its relationship is about to go.
-                Err(_) => Err(ClothErrorKind::NoTransform { value: target }),
+            let sampled = poses
+                .get(target)
+                .map_err(|entity| ClothErrorKind::NoTransform { value: entity });
+            let teleport = sampled.as_ref().is_ok_and(|sampled| sampled.teleported);
+            teleported |= teleport;
+            let pose = |end: fn(SampledPose) -> GlobalTransform| {
+                let place = sampled.clone().map(end)?;
+                Pose::of(&place)
             };
+            let (started, pose) = (pose(|s| s.start), pose(|s| s.end));
             let known = state.target == Some(target) && state.revision == topology.revision;
             if let Ok(pose) = pose
                 && (state.stale || !known)
             {
-                state.resolve(target, pose, topology, frame, &particles);
+                let started = started.as_ref().map_or(pose, |started| *started);
+                state.resolve(target, [started, pose], topology, frame, &particles);
                 changed = true;
             }
             let end = match pose {
@@ -152,30 +165,68 @@ pub fn prepare_attachments(
             let Some(end) = end.filter(|_| resolved) else {
                 continue;
             };
-            let start = state.pose.unwrap_or(end);
-            let far = ClothCollider::TELEPORT_SPEED * step.world_seconds();
-            let jumped = rest.is_unseen() || step.running() && start.distance(&end) > far;
+            let from = state.pose.unwrap_or(end);
+            let start = started.unwrap_or(end);
+            let unfelt = rest.is_unseen() || !step.running();
+            let seen = state.seen.replace(end);
+            let carried = seen.is_some_and(|seen| seen != start);
+            if carried && let Some(seen) = seen {
+                state.velocity = seen.turn_to(&start) * state.velocity;
+            }
+            let (start, jumped) = if unfelt {
+                (end, (from != end || rest.is_unseen()).then_some(from))
+            } else if carried {
+                (start, Some(from))
+            } else {
+                (from, None)
+            };
+            let excess = if unfelt {
+                Vec3::ZERO
+            } else {
+                excess(state.velocity, start.way_to(&end), step.world_seconds()).0
+            };
             let body = Body {
                 attachment,
                 target,
-                start: if jumped { end } else { start },
+                start,
                 end,
-                jumped: jumped.then_some(start),
+                jumped,
+                excess,
                 pulled: Vec3::ZERO,
                 substeps: 0,
             };
             attached.add(body, &state.points, state.compliances.as_deref());
         }
         changed |= attached.bodies.len() != bodies_before;
-        changed |= attached.finish(frame, &mut particles);
-        attached.disturbed |= changed || attached.bodies.iter().any(|body| body.jumped.is_some());
+        let mut moved = false;
+        if !rest.is_unseen() {
+            attached.soften(&particles);
+            for body in &attached.bodies {
+                if step.running()
+                    && let Ok((.., mut state, _)) = attachments.get_mut(body.attachment)
+                {
+                    state.velocity = body.start.way_to(&body.end) / step.world_seconds();
+                }
+            }
+            moved = attached.take_along(frame, &mut particles);
+            if moved && teleported {
+                let teleported = ClothTeleported {
+                    entity: cloth,
+                    mode: TeleportMode::KeepShape,
+                };
+                commands.command_scope(|mut commands| commands.trigger(teleported));
+            }
+        }
+        changed |= attached.finish(frame, &mut particles, step.world_seconds());
+        attached.disturbed |= changed || moved;
         attached.revision += u64::from(changed);
         // One that sleeps remembers where things were when it fell asleep, however slowly they creep away.
-        if rest.is_unseen() || step.running() && (attached.disturbed || !rest.is_asleep()) {
-            for body in &attached.bodies {
-                if let Ok((.., mut state, _)) = attachments.get_mut(body.attachment) {
-                    state.pose = Some(body.end);
-                }
+        let awake = !rest.is_asleep() || attached.disturbed;
+        for body in &attached.bodies {
+            if (awake || body.jumped.is_some())
+                && let Ok((.., mut state, _)) = attachments.get_mut(body.attachment)
+            {
+                state.pose = Some(body.end);
             }
         }
     }
@@ -186,7 +237,7 @@ impl AttachmentState {
     fn resolve(
         &mut self,
         target: Entity,
-        pose: Pose,
+        [started, pose]: [Pose; 2],
         topology: &Topology,
         frame: &ClothFrame,
         particles: &ClothParticles,
@@ -205,8 +256,28 @@ impl AttachmentState {
         let stay = data.offset == AttachmentOffset::Keep
             && self.target == Some(target)
             && self.revision == topology.revision;
+        // Those of a cloth that grows grow with it.
+        let grown = data.offset == AttachmentOffset::Keep
+            && self.target == Some(target)
+            && self.particles == topology.particles()
+            && self.scale != topology.scale;
         let before = std::mem::take(&mut self.points);
         let map = pose.seen_from(frame.end);
+        let growth = if grown {
+            let ratio = topology.scale / self.scale;
+            let known = self.pose.unwrap_or(started);
+            (!known.grows_to(&pose, ratio)).then_some(ratio)
+        } else {
+            None
+        };
+        let map_before = started.seen_from(frame.start);
+        let kept_point = |point: Vec3| {
+            growth.map_or(point, |ratio| {
+                let about = particles.grown_about;
+                map_before.undo(about + ratio * (map_before.apply(point) - about))
+            })
+        };
+        let stay = stay || grown;
         let point = |k: usize, i: u32| match &data.offset {
             AttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
             AttachmentOffset::Keep => {
@@ -214,7 +285,7 @@ impl AttachmentState {
                 let kept = before.find(|(particle, _)| *particle == i);
                 Some(kept.map_or_else(
                     || map.undo(particles.position.get(i as usize)),
-                    |&(_, point)| point,
+                    |&(_, point)| kept_point(point),
                 ))
             }
         };
@@ -257,6 +328,8 @@ impl AttachmentState {
         }
         self.target = Some(target);
         self.revision = topology.revision;
+        self.scale = topology.scale;
+        self.particles = topology.particles();
         (self.stale, self.wrong) = (false, errors);
     }
 }

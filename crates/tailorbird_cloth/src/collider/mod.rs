@@ -90,14 +90,17 @@ pub use self::{
         find_contacts,
     },
 };
-use crate::error::{ClothErrorKind, ClothStatus};
+use crate::{
+    error::{ClothErrorKind, ClothStatus},
+    sampling::SampledMotion,
+};
 
 /// A solid thing that cloths collide with. It follows the entity's `Transform`, from step to step without gaps, and
 /// takes cloth along by friction. [`ClothLayers`] says which cloths, if not all.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[require(Transform, ClothStatus, ColliderPose)]
+#[require(Transform, ClothStatus, ColliderPose, SampledMotion)]
 pub struct ClothCollider {
     /// Its shape, around the entity's origin.
     pub shape: ColliderShape,

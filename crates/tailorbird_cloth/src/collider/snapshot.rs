@@ -3,7 +3,6 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
-use bevy_transform::helper::TransformHelper;
 
 use super::{
     ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,
@@ -13,14 +12,14 @@ use super::{
 use crate::{
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::split,
+    sampling::SampledPoses,
     step::ClothStep,
 };
 
-/// Where a collider was at the end of the step before. Written by [`snapshot_colliders`] alone.
+/// The scale of a collider. Written by [`snapshot_colliders`] alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ColliderPose {
-    place: Option<Isometry3d>,
     scale: Vec3,
 }
 
@@ -155,7 +154,7 @@ fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
 /// One that is wrong, or whose transform is not finite, is reported and left out.
 pub fn snapshot_colliders(
     step: Res<ClothStep>,
-    helper: TransformHelper,
+    poses: SampledPoses,
     mut list: ResMut<ClothColliders>,
     mut external: ResMut<ExternalColliders>,
     mut colliders: Query<(
@@ -182,10 +181,10 @@ pub fn snapshot_colliders(
             ErrorSource::Collider,
             errors,
         );
-        let Ok(transform) = helper.compute_global_transform(entity) else {
+        let Ok(sampled) = poses.get(entity) else {
             continue;
         };
-        let place = split(&transform);
+        let place = split(&sampled.end);
         let error = place.as_ref().err().cloned();
         ClothStatus::update(
             &mut status,
@@ -195,18 +194,10 @@ pub fn snapshot_colliders(
             error,
         );
         let (Ok((end, scale)), true) = (place, valid) else {
-            pose.place = None;
             continue;
         };
         let scale = pose.settle(scale);
-        let start = pose
-            .place
-            .filter(|start| {
-                let moved = start.translation.distance(end.translation);
-                moved <= ClothCollider::TELEPORT_SPEED * step.world_seconds()
-            })
-            .unwrap_or(end);
-        pose.place = Some(end);
+        let start = split(&sampled.start).map_or(end, |(start, _)| start);
         list.add(&Whole {
             step: step.steps(),
             entity,

@@ -37,20 +37,25 @@
 //! ```
 //!
 //! Targets move evenly over the substeps, from where they were at the start of the step to where they are set. Where none
-//! are set in a step, they stay. Where they move faster than
-//! [`ClothCollider::TELEPORT_SPEED`](crate::collider::ClothCollider::TELEPORT_SPEED) they jump, and give the cloth no velocity.
+//! are set in a step, they stay. Those that are set in `FixedUpdate` are taken as they are; those that are set once a frame, in `Update`
+//! or `PostUpdate`, are sampled a frame late, between those of two frames ([`sampling`](crate::sampling)). Where the one that moves
+//! furthest [hops](crate::sampling#hops), and where they were set while cloth did not simulate, each particle is taken along with its
+//! target, and keeps the velocity that it has.
 //!
 //! The constraints hold after all others, before the colliders. A particle that is stopped loses the velocity with which it
 //! would leave again: it rests at its limit. The maximum distance counts before the backstop; pins and attachments
 //! count before both.
 
 mod prepare;
+mod samples;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
 pub use prepare::{MotionState, prepare_motion};
+pub use samples::TargetSamples;
+pub(crate) use samples::{begin_fixed_targets, end_fixed_targets, see_targets};
 
 use crate::error::ClothErrorKind;
 
@@ -224,6 +229,7 @@ pub enum TargetSpace {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
+#[require(TargetSamples)]
 pub struct ClothMotionTargets {
     space: TargetSpace,
     positions: Vec<Vec3>,

@@ -5,16 +5,19 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 
-use super::{ClothMotionConstraints, ClothMotionTargets, TargetSpace};
+use super::{
+    ClothMotionConstraints, ClothMotionTargets, TargetSamples, TargetSpace, samples::TargetsAt,
+};
 use crate::{
     cloth::Cloth,
-    collider::ClothCollider,
     error::{ClothStatus, ErrorSource},
     frame::ClothFrame,
     memory::heap,
     numbers::Numbers,
     particles::ClothParticles,
     points::Points,
+    sampling::{FrameClock, HopDetector},
+    settings::ClothSettings,
     sleep::ClothRest,
     solver::kernels::{
         lanes::{Shared, SharedPoints},
@@ -51,6 +54,11 @@ pub struct MotionState {
     disturbed: bool,
     /// How far the target goes in this step that goes furthest \[m\].
     furthest: f32,
+    /// Which targets they were aimed at.
+    aimed: [u64; 3],
+    hops: HopDetector,
+    /// Whether a step was left out.
+    idle: bool,
     /// Of the topology.
     revision: u64,
 }
@@ -64,11 +72,12 @@ const STANDS: f32 = 1e-5;
 /// Reads the motion constraints where they changed, and the targets at the end of this step.
 pub fn prepare_motion(
     step: Res<ClothStep>,
+    (clock, settings): (Res<FrameClock>, Res<ClothSettings>),
     mut cloths: Query<
         (
             Entity,
             Option<Ref<ClothMotionConstraints>>,
-            Option<Ref<ClothMotionTargets>>,
+            Option<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
             &ClothTopology,
             &ClothFrame,
             &ClothRest,
@@ -125,7 +134,7 @@ pub fn prepare_motion(
         if rebuilt {
             motion.rest(topology, step.level());
         }
-        if let Some(targets) = &targets
+        if let Some((targets, _)) = &targets
             && (rebuilt || targets.is_changed())
         {
             let errors = targets.errors(topology.particles());
@@ -134,17 +143,24 @@ pub fn prepare_motion(
         }
         motion.revision = topology.revision;
         if step.running() {
-            let valid = targets.filter(|targets| {
+            let mut elsewhere = std::mem::take(&mut motion.idle);
+            let valid = targets.filter(|(targets, _)| {
                 !targets.positions.is_empty() && status.is_ok_for(ErrorSource::MotionTargets)
             });
             // One that sleeps remembers where the targets were when it fell asleep, however slowly they creep away.
             if !rest.is_asleep() {
                 motion.pass_on();
             }
-            if let Some(targets) = valid {
-                let moves = targets.space == TargetSpace::World && frame.is_moving();
-                if rebuilt || targets.is_changed() || moves {
-                    motion.aim(&targets, topology, frame, step.level());
+            let mut fixed = true;
+            if let Some((targets, mut samples)) = valid {
+                samples.begin_step(&targets, &clock);
+                elsewhere |= samples.take_jump();
+                fixed = samples.are_fixed();
+                let at = samples.at(&targets, &clock, topology.particles());
+                let moves = targets.space == TargetSpace::World
+                    && (frame.is_moving() || frame.jump_turn().is_some());
+                if rebuilt || at.key != motion.aimed || moves {
+                    motion.aim(targets.space, &at, topology, frame, step.level());
                 }
                 if rebuilt {
                     motion.stay();
@@ -155,11 +171,17 @@ pub fn prepare_motion(
             } else {
                 0.0
             };
-            if furthest > ClothCollider::TELEPORT_SPEED * step.world_seconds() {
+            let way = Vec3::X * furthest;
+            let speed = settings.valid_teleport_speed();
+            elsewhere |= motion.hops.is_hop(way, step.world_seconds(), speed) && fixed;
+            if elsewhere && motion.moving {
+                motion.take_along(&mut particles);
                 motion.stay();
             }
             motion.disturbed |= furthest > WAKES;
             motion.furthest = furthest;
+        } else {
+            motion.idle = true;
         }
         let held = &motion.held;
         let order = particles.order.clone();
@@ -271,33 +293,56 @@ impl MotionState {
         self.moving = false;
     }
 
+    /// Takes each particle along with its target, where that was put elsewhere.
+    fn take_along(&self, particles: &mut ClothParticles) {
+        let [start, end] = &self.targets;
+        let ClothParticles {
+            position,
+            previous_position,
+            step_position,
+            inv_mass,
+            limited,
+            ..
+        } = particles;
+        let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
+        for i in free.chain(limited.iter().map(|&i| i as usize)) {
+            let way = end.get(i) - start.get(i);
+            for points in [&mut *position, &mut *previous_position, &mut *step_position] {
+                points.add(i, way);
+            }
+        }
+    }
+
     /// Reads valid targets.
     fn aim(
         &mut self,
-        targets: &ClothMotionTargets,
+        space: TargetSpace,
+        targets: &TargetsAt,
         topology: &Topology,
         frame: &ClothFrame,
         level: Level,
     ) {
-        let (point, vector): (&dyn Fn(Vec3) -> Vec3, &dyn Fn(Vec3) -> Vec3) = match targets.space {
+        self.aimed = targets.key;
+        let (point, vector): (&dyn Fn(Vec3) -> Vec3, &dyn Fn(Vec3) -> Vec3) = match space {
             TargetSpace::Frame => (&|p| p, &|v| v),
             TargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
                 frame.end.rotation.inverse() * v
             }),
         };
-        for (i, p) in targets.positions.iter().enumerate() {
-            let i = topology.order.stored(i as u32) as usize;
-            self.targets[1].set(i, point(*p));
+        for i in 0..targets.positions[0].len() {
+            let stored = topology.order.stored(i as u32) as usize;
+            self.targets[1].set(stored, point(targets.position(i)));
         }
-        if targets.normals.is_empty() {
+        if targets.normals[0].is_empty() {
             // For a backstop alone.
             if !self.backstop_distance.is_empty() {
                 self.compute_normals(topology, level);
             }
         } else {
-            for (i, n) in targets.normals.iter().enumerate() {
-                let i = topology.order.stored(i as u32) as usize;
-                self.normals[1].set(i, vector(*n).normalize_or_zero());
+            for i in 0..targets.normals[0].len() {
+                let stored = topology.order.stored(i as u32) as usize;
+                let normal = vector(targets.normal(i)).normalize_or_zero();
+                self.normals[1].set(stored, normal);
             }
         }
         self.moving = true;

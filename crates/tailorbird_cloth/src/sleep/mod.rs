@@ -8,7 +8,7 @@ mod unseen;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Quat, Vec3};
 use bevy_reflect::prelude::*;
 
 pub use unseen::{ClothSeen, carry_unseen, rest_unseen};
@@ -183,6 +183,9 @@ const SETTLED: f32 = 1.0;
 /// The part of its motion in a step that a settled cloth keeps: the rest is friction within the fabric.
 const KEPT: f32 = 0.02;
 
+/// A cloth wakes that is put elsewhere and turned by more \[rad\].
+const TURN: f32 = 1e-3;
+
 /// Room around a cloth in which a collider wakes it \[m\].
 const ROOM: f32 = 0.02;
 
@@ -254,9 +257,12 @@ pub fn wake_cloths(
             || solver.is_changed()
             || topology.is_changed()
             || shading.is_changed();
+        // What hangs straight does not, turned; what is put elsewhere as it is sleeps on.
+        let turned = |turn: Quat| turn.angle_between(Quat::IDENTITY) > TURN;
         let pulled = grab.particle().is_some()
             || !forces.is_empty()
             || frame.is_moving()
+            || frame.jump_turn().is_some_and(turned)
             || attached.is_disturbed()
             || motion.is_some_and(MotionState::is_disturbed);
         let other = |known: Around| {

@@ -4,7 +4,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Isometry3d, Vec3};
-use bevy_transform::helper::TransformHelper;
 use tracing::error;
 
 use super::{
@@ -20,6 +19,7 @@ use crate::{
     frame::{ClothFrame, split},
     particles::ClothParticles,
     points::Points,
+    sampling::SampledPoses,
     solver::kernels::{
         aerodynamics::{self, Air, AirSheet},
         breeze::{self, Breeze},
@@ -125,7 +125,7 @@ impl Source {
 pub fn prepare_wind(
     step: Res<ClothStep>,
     wind: Res<Wind>,
-    helper: TransformHelper,
+    poses: SampledPoses,
     mut blowing: ResMut<BlowingWind>,
     mut zones: Query<(Entity, Ref<WindZone>, &mut ClothStatus)>,
     commands: ParallelCommands,
@@ -151,8 +151,7 @@ pub fn prepare_wind(
             let errors = zone.errors();
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Wind, errors);
         }
-        let place = helper.compute_global_transform(entity);
-        let Ok(place) = place.as_ref().map(split) else {
+        let Ok(place) = poses.get(entity).map(|pose| split(&pose.end)) else {
             continue;
         };
         let error = place.as_ref().err().cloned();

@@ -6,7 +6,10 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 
 use super::{Gusts, Turbulence};
-use crate::error::{ClothErrorKind, ClothStatus};
+use crate::{
+    error::{ClothErrorKind, ClothStatus},
+    sampling::SampledMotion,
+};
 
 /// Air that moves in a part of the world, which is added to [`Wind`](super::Wind) and to other zones there. It moves, turns and grows with its
 /// entity, and `velocity` and turbulence turn with it.
@@ -34,7 +37,7 @@ use crate::error::{ClothErrorKind, ClothStatus};
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(Transform, ClothStatus)]
+#[require(Transform, ClothStatus, SampledMotion)]
 pub struct WindZone {
     /// Where it blows.
     pub shape: WindShape,

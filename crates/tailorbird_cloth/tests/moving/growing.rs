@@ -1,0 +1,161 @@
+//! A scale that changes keeps shape and motion.
+
+use bevy_app::Update;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_time::Time;
+use bevy_transform::components::Transform;
+use tailorbird_cloth::prelude::*;
+
+use crate::game::{Game, HELD, Held, Mover, When, cape, spawn_cape};
+
+/// The cape as it hangs, by its own size.
+fn shape(game: &Game, cloth: Entity) -> Vec<Vec3> {
+    let particles: &ClothParticles = game.get(cloth);
+    let frame: &ClothFrame = game.get(cloth);
+    particles.positions().map(|p| p / frame.scale()).collect()
+}
+
+fn furthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    assert_eq!(a.len(), b.len());
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| a.distance(*b))
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn a_scale_that_changes_at_once_keeps_the_shape() {
+    for scale in [
+        Vec3::splat(2.0),
+        Vec3::splat(0.5),
+        Vec3::new(1.0, 1.5, 1.0),
+        Vec3::new(-1.0, 1.0, 1.0),
+        Vec3::new(1.0, -1.0, 1.0),
+        Vec3::new(1.0, 1.0, -1.0),
+        Vec3::new(-1.0, -1.0, 1.0),
+        Vec3::splat(-1.0),
+    ] {
+        for fixed in [Vec3::ONE, Vec3::new(1.0, 0.8, 0.6)] {
+            let mut game = Game::new(60.0, 60.0);
+            let (cloth, body) = spawn_cape(&mut game, Held::Pinned);
+            game.app.world_mut().resource_mut::<ClothSettings>().gravity =
+                Vec3::new(0.0, -6.0, -6.0);
+            game.edit::<Transform>(body, |place| place.scale = fixed);
+            game.frames(30);
+            // It swings, and is far from its rest shape.
+            let (before, speed) = (shape(&game, cloth), game.fastest(cloth));
+            assert!(speed > 1.0, "{speed}");
+            game.edit::<Transform>(body, |place| place.scale = scale * fixed);
+            game.frames(1);
+            let away = furthest(&before, &shape(&game, cloth));
+            // What is turned out of its plane has other lengths after a stretch along one axis, and goes back to those of the fabric.
+            let even = scale.abs() == Vec3::ONE * scale.x.abs();
+            let step = if even { 2.0 * speed / 60.0 } else { 0.3 };
+            assert!(away < step, "{scale} {fixed}: {away} of {step}");
+            let now = game.fastest(cloth) / scale.abs().max_element();
+            assert!(
+                now < if even { 1.5 } else { 3.0 } * speed && now > 0.3 * speed,
+                "{scale}: {now}, before {speed}"
+            );
+            let errors: &ClothStatus = game.get(cloth);
+            assert!(errors.errors().next().is_none());
+        }
+    }
+}
+
+#[derive(Component)]
+struct Tween(fn(f32) -> f32);
+
+fn tween(time: Res<Time>, mut all: Query<(&Tween, &mut Transform)>) {
+    for (tween, mut place) in &mut all {
+        place.scale = Vec3::splat(tween.0(time.elapsed_secs()));
+    }
+}
+
+/// From 1 to 2 and back within two seconds.
+fn there_and_back(t: f32) -> f32 {
+    let t = (t - 2.0).clamp(0.0, 2.0);
+    1.0 + 0.5 * (1.0 - (std::f32::consts::PI * t).cos())
+}
+
+/// A cape that hangs grows and shrinks: it is never flat, nor fast, nor stretched.
+#[test]
+fn a_tween_keeps_the_shape_in_each_frame() {
+    for fps in [30.0, 60.0, 144.0] {
+        for held in HELD {
+            let mut game = Game::new(fps, 60.0);
+            game.app.add_systems(Update, tween);
+            let (cloth, body) = spawn_cape(&mut game, held);
+            game.app
+                .world_mut()
+                .entity_mut(body)
+                .insert(Tween(there_and_back));
+            if matches!(held, Held::Attached | Held::Sprung) {
+                // The cloth itself grows as well.
+                game.app
+                    .world_mut()
+                    .entity_mut(cloth)
+                    .insert(Tween(there_and_back));
+            }
+            game.seconds(2.0);
+            let before = shape(&game, cloth);
+            game.film();
+            let mut away = 0.0f32;
+            let mut largest = 0.0f32;
+            for _ in 0..(2.5 * fps) as u32 {
+                game.frames(1);
+                away = away.max(furthest(&before, &shape(&game, cloth)));
+                largest = largest.max(game.get::<ClothFrame>(cloth).scale().x);
+            }
+            let film = game.film();
+            let name = format!("{fps} {held:?}");
+            println!(
+                "{name}: {away} m, {} , {} m/s",
+                film.stretch(),
+                film.speed(60.0)
+            );
+            assert!((largest - 2.0).abs() < 0.01, "{name}: {largest}");
+            assert!(away < 0.1, "{name}: {away} m");
+            assert!(film.stretch() < 0.05, "{name}: {}", film.stretch());
+            assert!(film.speed(60.0) < 3.0, "{name}: {}", film.speed(60.0));
+        }
+    }
+}
+
+/// The cape alone grows, while what holds it walks.
+#[test]
+fn a_cape_that_grows_goes_where_its_holder_goes() {
+    fn walk(t: f32) -> Transform {
+        Transform::from_xyz((t - 1.0).max(0.0), 0.0, 0.0)
+    }
+    let mut game = Game::new(60.0, 60.0);
+    game.app.add_systems(Update, tween);
+    let (cloth, body) = spawn_cape(&mut game, Held::Attached);
+    let mover = Mover(When::PostUpdate, walk);
+    game.app.world_mut().entity_mut(body).insert(mover);
+    game.app
+        .world_mut()
+        .entity_mut(cloth)
+        .insert(Tween(there_and_back));
+    game.seconds(5.0);
+    let film = game.film();
+    assert!(film.stretch() < 0.05, "{}", film.stretch());
+    let middle = 0.5 * (game.at(cloth, 0) + game.at(cloth, 15));
+    let place = game.get::<Transform>(body).translation;
+    assert!(middle.distance(place) < 0.05, "{middle} {place}");
+}
+
+#[test]
+fn free_fall_goes_on() {
+    let mut game = Game::new(60.0, 60.0);
+    let cloth = game.spawn(cape());
+    game.edit::<ClothMaterial>(cloth, |material| material.damping = 0.0);
+    game.seconds(0.5);
+    let speed = game.fastest(cloth);
+    game.edit::<Transform>(cloth, |place| place.scale = Vec3::splat(2.0));
+    game.frames(1);
+    let expected = 2.0 * speed + 9.81 / 60.0;
+    let is = game.fastest(cloth);
+    assert!((is - expected).abs() < 0.05, "{is} {expected}");
+}
