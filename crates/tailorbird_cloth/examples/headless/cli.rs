@@ -6,7 +6,8 @@ use bevy_math::Vec3;
 use clap::{Parser, ValueEnum};
 use tailorbird_cloth::prelude::*;
 
-use super::demands::Demands;
+pub use super::demands::Scene;
+use super::demands::{Demands, Held};
 
 /// A cloth without a renderer: simulates a sheet of 2 m × 2 m, horizontal at y = 1 at the start, and prints figures.
 #[derive(Parser, Clone, Debug)]
@@ -123,37 +124,6 @@ pub struct Args {
     pub dump_every: Option<u32>,
 }
 
-/// What happens.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scene {
-    /// Swings down from two corners.
-    Hang,
-    /// Blows in the wind, held at one edge.
-    Flag,
-    /// Falls on a sphere.
-    Drape,
-    /// Falls.
-    Free,
-    /// Between two posts that stand too far apart.
-    Posts,
-    /// The same, and one is put back at once.
-    PutBack,
-    /// A body is put into a curtain.
-    Impaled,
-    /// The same, and is taken away.
-    ImpaledGone,
-    /// A ball is pushed into a net that is held all round, and comes back.
-    Net,
-    /// A tube around a ball that is too large.
-    Tube,
-    /// A body appears that reaches into a sheet.
-    Overlap,
-    /// A curtain whose pins are released over the ground.
-    Upright,
-    /// A ball flies through a curtain.
-    Ball,
-}
-
 /// How the sheet is described.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mesh {
@@ -231,6 +201,7 @@ impl Args {
             Scene::Net => Pins::Border,
             Scene::Drape | Scene::Free | Scene::Posts | Scene::PutBack => Pins::None,
             Scene::Tube | Scene::Overlap => Pins::None,
+            Scene::PauseMove | Scene::Hop if self.demands.held == Held::Attached => Pins::None,
             _ => Pins::Edge,
         })
     }

@@ -11,15 +11,20 @@
 //! | overlap | a sheet without pins that a body reaches into when it appears |
 //! | upright | a curtain whose pins are released over the ground |
 //! | ball | a ball flies through a curtain and on |
+//! | pause-move | `Time<Virtual>` is paused, what holds a curtain is moved, time goes on |
+//! | hop | what holds a curtain is put elsewhere from one frame to the next, and a second later back |
+//! | grow | a curtain's scale goes from 1 to 2 and back within two seconds; half a second later it is mirrored |
 
+use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec2, Vec3};
+use bevy_time::{Time, Virtual};
 use bevy_transform::components::Transform;
 use clap::{Args, ValueEnum};
 use tailorbird_cloth::prelude::*;
 
 use super::{
-    cli::{self, Mesh, Scene},
+    cli::{self, Mesh},
     mesh,
     scene::SIZE,
 };
@@ -46,6 +51,60 @@ pub struct Demands {
     /// What is put into the cloth.
     #[arg(long, value_enum, default_value_t = Body::Ball)]
     pub body: Body,
+
+    /// How far what holds the curtain is moved in the scenes pause-move and hop [m].
+    #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = cli::finite, allow_hyphen_values = true)]
+    pub way: f32,
+
+    /// What holds it there.
+    #[arg(long, value_enum, default_value_t = Held::Attached)]
+    pub held: Held,
+}
+
+/// What holds a curtain that is moved.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// It is attached to an entity.
+    Attached,
+    /// It is the child of an entity, and pinned.
+    Child,
+}
+
+/// What happens.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scene {
+    /// Swings down from two corners.
+    Hang,
+    /// Blows in the wind, held at one edge.
+    Flag,
+    /// Falls on a sphere.
+    Drape,
+    /// Falls.
+    Free,
+    /// Between two posts that stand too far apart.
+    Posts,
+    /// The same, and one is put back at once.
+    PutBack,
+    /// A body is put into a curtain.
+    Impaled,
+    /// The same, and is taken away.
+    ImpaledGone,
+    /// A ball is pushed into a net that is held all round, and comes back.
+    Net,
+    /// A tube around a ball that is too large.
+    Tube,
+    /// A body appears that reaches into a sheet.
+    Overlap,
+    /// A curtain whose pins are released over the ground.
+    Upright,
+    /// A ball flies through a curtain.
+    Ball,
+    /// A curtain whose holder is moved while time stands still.
+    PauseMove,
+    /// A curtain whose holder is put elsewhere from one frame to the next.
+    Hop,
+    /// A curtain whose entity grows and shrinks, and is mirrored.
+    Grow,
 }
 
 /// What is put into a cloth.
@@ -95,7 +154,8 @@ impl Scene {
             Self::Net => 5.5,
             Self::Tube => 6.0,
             Self::Overlap => 3.0,
-            Self::Upright => 4.0,
+            Self::Upright | Self::PauseMove => 4.0,
+            Self::Hop | Self::Grow => 6.0,
             // It is a second beyond the curtain at the end.
             Self::Ball => 2.0 + 2.0 / f64::from(demands.speed),
             Self::Hang | Self::Flag | Self::Drape | Self::Free => return None,
@@ -122,7 +182,14 @@ impl Scene {
     pub fn is_upright(self) -> bool {
         matches!(
             self,
-            Self::Impaled | Self::ImpaledGone | Self::Upright | Self::Ball | Self::Tube
+            Self::Impaled
+                | Self::ImpaledGone
+                | Self::Upright
+                | Self::Ball
+                | Self::Tube
+                | Self::PauseMove
+                | Self::Hop
+                | Self::Grow
         )
     }
 }
@@ -133,6 +200,8 @@ pub struct Play {
     demands: Demands,
     /// The post that moves, or the body.
     actor: Option<Entity>,
+    /// Whether it was moved.
+    moved: bool,
 }
 
 impl Play {
@@ -143,12 +212,20 @@ impl Play {
             scene,
             demands,
             actor: None,
+            moved: false,
         };
         match scene {
             Scene::Posts | Scene::PutBack => {
                 let half = 0.5 * scene.size().x;
                 play.attach(world, cloth, |p| p.x < mesh::NEAR - half);
                 play.attach(world, cloth, |p| p.x > half - mesh::NEAR);
+            }
+            Scene::PauseMove | Scene::Hop if demands.held == Held::Attached => {
+                play.attach(world, cloth, |p| p.y > 0.5 * scene.size().y - mesh::NEAR);
+            }
+            Scene::PauseMove | Scene::Hop => {
+                let holder = world.spawn(Transform::default()).add_child(cloth).id();
+                play.actor = Some(holder);
             }
             Scene::Net => {
                 let ball = ClothCollider::sphere(0.3);
@@ -186,6 +263,23 @@ impl Play {
         self.actor = Some(post);
     }
 
+    /// What happens between two frames, before the step that ends at `time` [s]: while time stands still.
+    pub fn interrupt(&mut self, app: &mut App, time: f32) {
+        if self.scene != Scene::PauseMove || self.moved || time <= 2.0 {
+            return;
+        }
+        self.moved = true;
+        app.world_mut().resource_mut::<Time<Virtual>>().pause();
+        app.update();
+        if let Some(actor) = self.actor
+            && let Some(mut holder) = app.world_mut().get_mut::<Transform>(actor)
+        {
+            holder.translation.x += self.demands.way;
+        }
+        app.update();
+        app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+    }
+
     /// Before the step that ends at `time` [s].
     pub fn act(&mut self, world: &mut World, cloth: Entity, time: f32) {
         let demands = self.demands;
@@ -193,6 +287,14 @@ impl Play {
             Scene::Posts => Some(post(time, &demands)),
             Scene::PutBack if time > 4.0 => Some(Transform::default()),
             Scene::PutBack => Some(post(time, &demands)),
+            Scene::Hop if time > 3.0 => Some(Transform::default()),
+            Scene::Hop if time > 2.0 => Some(Transform::from_xyz(demands.way, 0.0, 0.0)),
+            Scene::Grow => {
+                if let Some(mut place) = world.get_mut::<Transform>(cloth) {
+                    place.scale = grown(time);
+                }
+                None
+            }
             Scene::Net => Some(net_ball(time)),
             Scene::Ball => Some(self.flying_ball(time)),
             Scene::ImpaledGone if time > 4.0 => {
@@ -232,6 +334,14 @@ impl Play {
 /// Where the post is that moves.
 fn post(time: f32, demands: &Demands) -> Transform {
     Transform::from_xyz(demands.apart * SIZE * time.min(1.0), 0.0, 0.0)
+}
+
+/// How large the curtain is that grows.
+fn grown(time: f32) -> Vec3 {
+    let part = (0.5 * (time - 2.0)).clamp(0.0, 1.0);
+    let scale = 1.5 - 0.5 * (std::f32::consts::TAU * part).cos();
+    let side = if time > 4.5 { -1.0 } else { 1.0 };
+    Vec3::new(side * scale, scale, scale)
 }
 
 /// From 0.35 m above the net to 0.6 m below it, and back.

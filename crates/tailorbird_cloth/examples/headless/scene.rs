@@ -106,6 +106,7 @@ impl Sheet {
     pub fn step(&mut self) -> Duration {
         self.step += 1;
         let time = (f64::from(self.step) / self.hz) as f32;
+        self.play.interrupt(&mut self.app, time);
         self.play.act(self.app.world_mut(), self.entity, time);
         self.app.update();
         self.peaks.add(self.seen());

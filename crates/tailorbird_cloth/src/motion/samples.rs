@@ -22,6 +22,7 @@ pub struct TargetSamples {
     #[reflect(ignore)]
     seen: [SeenTargets; KEPT],
     known: usize,
+    versions: u64,
     #[reflect(ignore)]
     changed: Option<Tick>,
     /// When this step of the fixed loop began.
@@ -37,7 +38,10 @@ pub struct TargetSamples {
 
 #[derive(Clone, Debug, Default)]
 struct SeenTargets {
+    /// Of the frame.
     number: u64,
+    /// Different whenever it is set.
+    version: u64,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
@@ -136,7 +140,7 @@ impl TargetSamples {
                 positions: [&older.positions, &newer.positions],
                 normals: [&older.normals, &newer.normals],
                 part,
-                key: [older.number, newer.number, u64::from(part.to_bits())],
+                key: [older.version, newer.version, u64::from(part.to_bits())],
             };
         }
         TargetsAt {
@@ -149,6 +153,7 @@ impl TargetSamples {
 
     /// Takes the targets for those of this frame; with nothing before them where they were put elsewhere.
     fn see(&mut self, targets: &ClothMotionTargets, number: u64, elsewhere: bool) {
+        self.versions += 1;
         if elsewhere {
             self.known = 0;
         }
@@ -158,6 +163,7 @@ impl TargetSamples {
         }
         let seen = &mut self.seen[0];
         seen.number = number;
+        seen.version = self.versions;
         seen.positions.clone_from(&targets.positions);
         seen.normals.clone_from(&targets.normals);
     }

@@ -59,7 +59,7 @@
 //! # Blows
 //!
 //! What stays below that may still start or stop too suddenly for cloth to follow. Where one thing holds all of a cloth, its entity or what it
-//! is attached to, it pulls with at most 300 m/s²; what it goes beyond carries the cloth. A holder that stood and moves at 8 to 29 m/s from
+//! is attached to, it pulls with at most 150 m/s²; what it goes beyond carries the cloth. A holder that stood and moves at 8 to 29 m/s from
 //! one step to the next would else stretch single edges of a cape by 50 to 120 % for a moment.
 //!
 //! A change of parents is a hop as well. A world whose origin is shifted hops as a whole, which nobody feels.
@@ -97,9 +97,8 @@ pub(crate) struct FixedLoopEnds;
 /// What the fixed loop has not moved for so many steps is moved between frames.
 pub(crate) const LAPSE: u8 = 15;
 
-/// What holds a whole cloth does not pull it with more than this [m/s²]: 5 m/s from one step of 1/60 s to the next, at which no edge
-/// stretches by more than a few hundredths.
-const MOST_ACCELERATION: f32 = 300.0;
+/// What holds a whole cloth does not pull it with more than this [m/s²]: 2.5 m/s from one step of 1/60 s to the next.
+const MOST_ACCELERATION: f32 = 150.0;
 
 /// The part of a way in a step \[m\] that carries cloth instead of pulling it, after a step with this velocity [m/s]; and the velocity of
 /// the rest.
