@@ -68,12 +68,16 @@ pub(crate) fn write_transforms(world: &mut World) {
 
 /// Notes where colliders are after the step.
 pub(crate) fn track_colliders(
+    time: Res<Time>,
+    settings: Res<ClothSettings>,
     bodies: Query<(&Position, &Rotation), With<RigidBody>>,
     mut colliders: Query<(Place, &mut TrackedPose)>,
 ) {
+    let (seconds, speed) = (time.delta_secs(), settings.teleport_speed);
     for (place, mut track) in &mut colliders {
         let body = place.body().and_then(|body| bodies.get(body).ok());
-        track.set(place.pose(body.map(|(position, rotation)| (position.0, rotation.0))));
+        let pose = place.pose(body.map(|(position, rotation)| (position.0, rotation.0)));
+        track.set(pose, seconds, speed);
     }
 }
 

@@ -161,7 +161,9 @@ pub(crate) fn push_colliders(
         if !end.translation.is_finite() {
             continue;
         }
-        let start = it.track.start(end, cloths.seconds());
+        let start = it
+            .track
+            .start(end, cloths.seconds(), cloths.teleport_speed());
         let shape = it.collider.shape_scaled();
         let aabb = shape.compute_local_aabb();
         let [before, now] = [start, end].map(|at| {

@@ -106,6 +106,11 @@ impl ClothBoxes<'_, '_> {
         self.time.delta_secs()
     }
 
+    /// What is a hop of a collider [m/s]: the teleport speed of the settings.
+    pub fn teleport_speed(&self) -> f32 {
+        self.settings.teleport_speed
+    }
+
     /// Whether a collider that is in this box during the step may meet a cloth.
     pub fn reach(&self, collider: WorldBox) -> bool {
         let collider = collider.grown(ROOM);

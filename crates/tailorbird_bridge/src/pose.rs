@@ -2,26 +2,40 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use tailorbird_cloth::collider::{ClothCollider, ClothReaction};
+use tailorbird_cloth::{collider::ClothReaction, sampling::HopDetector};
 
 /// Where an engine's collider was after the last step, in the world, with what cloth moved it.
 #[derive(Component, Clone, Copy, Debug, Default)]
-pub struct TrackedPose(Option<Isometry3d>);
+pub struct TrackedPose {
+    pose: Option<Isometry3d>,
+    hops: HopDetector,
+}
 
 impl TrackedPose {
-    /// Notes where the collider is after a step; a pose that is not finite is forgotten.
-    pub fn set(&mut self, pose: Isometry3d) {
+    /// Notes where the collider is after a step of this length \[s\], at this teleport speed [m/s]; a pose that is not finite is forgotten.
+    pub fn set(&mut self, pose: Isometry3d, seconds: f32, speed: f32) {
         let finite = pose.translation.is_finite() && pose.rotation.is_finite();
-        self.0 = finite.then_some(pose);
+        if finite && let Some(start) = self.pose {
+            let way = Vec3::from(pose.translation - start.translation);
+            self.hops.is_hop(way, seconds, speed);
+        }
+        self.pose = finite.then_some(pose);
     }
 
-    /// Where the motion to `end` began: the noted pose, or `end` itself for what is new, or is put elsewhere
-    /// ([`ClothCollider::TELEPORT_SPEED`]).
-    pub fn start(&self, end: Isometry3d, seconds: f32) -> Isometry3d {
-        let reach = ClothCollider::TELEPORT_SPEED * seconds;
-        self.0
-            .filter(|start| start.translation.distance(end.translation) <= reach)
-            .unwrap_or(end)
+    /// Where the motion to `end` in a step of this length \[s\] began: the noted pose, or, for what hopped at this teleport speed [m/s]
+    /// ([`ClothSettings::teleport_speed`](tailorbird_cloth::prelude::ClothSettings::teleport_speed)), where it would have been had it been
+    /// put elsewhere and then moved on as before; `end` itself for what is new.
+    pub fn start(&self, end: Isometry3d, seconds: f32, speed: f32) -> Isometry3d {
+        let Some(start) = self.pose else {
+            return end;
+        };
+        let way = Vec3::from(end.translation - start.translation);
+        let mut hops = self.hops;
+        if hops.is_hop(way, seconds, speed) {
+            let moved = hops.velocity() * seconds;
+            return Isometry3d::new(Vec3::from(end.translation) - moved, end.rotation);
+        }
+        start
     }
 }
 
@@ -64,11 +78,16 @@ mod tests {
     fn what_is_new_or_jumps_does_not_sweep() {
         let at = |x: f32| Isometry3d::from_translation(Vec3::X * x);
         let mut track = TrackedPose::default();
-        assert_eq!(track.start(at(1.0), 0.01), at(1.0));
-        track.set(at(1.0));
-        assert_eq!(track.start(at(2.0), 0.01), at(1.0));
-        assert_eq!(track.start(at(9.0), 0.01), at(9.0));
-        track.set(at(f32::NAN));
-        assert_eq!(track.start(at(2.0), 0.01), at(2.0));
+        let start = |track: &TrackedPose, to: f32| track.start(at(to), 0.01, 30.0);
+        let set = |track: &mut TrackedPose, to: f32| track.set(at(to), 0.01, 30.0);
+        assert_eq!(start(&track, 1.0), at(1.0));
+        set(&mut track, 1.0);
+        assert_eq!(start(&track, 1.2), at(1.0));
+        set(&mut track, 1.2);
+        // It goes on with 20 m/s.
+        let hopped = start(&track, 9.0);
+        assert!((hopped.translation.x - 8.8).abs() < 1e-5, "{hopped:?}");
+        set(&mut track, f32::NAN);
+        assert_eq!(start(&track, 2.0), at(2.0));
     }
 }

@@ -3,7 +3,8 @@
 //! Cloth is drawn between its last two steps, and so up to a step late; a bone that is animated in each frame is drawn where it is
 //! now. A cape would be seen to lag behind its shoulders by as much. So whoever writes the mesh moves the particles that are
 //! attached rigidly to the places that their points have now, and those around them along, less and less with the way along
-//! the sheet. The simulation knows nothing of it.
+//! the sheet. The simulation knows nothing of it. Where all that holds it was put elsewhere since the last step, the whole cloth is drawn
+//! there.
 //!
 //! [`ClothDrawnHolds`] keeps who moves along how much, and computes by how much each particle is drawn elsewhere:
 //!
@@ -145,12 +146,45 @@ impl ClothDrawnHolds {
             }
             self.motions[k] = attached.motion(*target, &transform, frame, fraction);
         }
+        if self.all_leap() {
+            self.draw_along(particles, fraction);
+            return;
+        }
         for weight in &self.weights {
             if let Some(motion) = self.motions[weight.target as usize] {
                 let i = weight.particle as usize;
                 let from = particles.interpolated(i, fraction);
                 self.offsets.add(i, (motion * from - from) * weight.weight);
             }
+        }
+    }
+
+    /// Whether all that is held is drawn so far from where it is that it was put elsewhere, and the cloth has not stepped since.
+    fn all_leap(&self) -> bool {
+        /// Further than anything runs in the time that cloth is late \[m\].
+        const LEAP: f32 = 1.0;
+        let offset = |held: &Held| self.offsets.get(held.particle as usize);
+        self.motions.iter().all(Option::is_some)
+            && self.held.iter().all(|held| offset(held).length() > LEAP)
+    }
+
+    /// Draws the whole cloth along with its first target.
+    fn draw_along(&mut self, particles: &ClothParticles, fraction: f32) {
+        let Some(motion) = self.motions.first().copied().flatten() else {
+            return;
+        };
+        let held: Vec<(usize, Vec3)> = self
+            .held
+            .iter()
+            .map(|held| held.particle as usize)
+            .map(|i| (i, self.offsets.get(i)))
+            .collect();
+        for i in 0..particles.len() {
+            let from = particles.interpolated(i, fraction);
+            self.offsets.set(i, motion * from - from);
+        }
+        for (i, offset) in held {
+            self.offsets.set(i, offset);
         }
     }
 

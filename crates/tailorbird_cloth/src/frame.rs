@@ -5,14 +5,14 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
-use bevy_transform::components::{GlobalTransform, Transform};
+use bevy_transform::components::GlobalTransform;
 
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     inertia::{ClothInertia, Felt, TeleportMode},
     particles::ClothParticles,
-    sampling::{SampledPoses, excess},
+    sampling::{SampledMotion, SampledPoses, excess},
     solver::kernels::rigid,
     stages::{ClothStages, Substep, for_each_awake},
     step::ClothStep,
@@ -249,10 +249,19 @@ impl ClothFrame {
         }
         if world_seconds.is_finite() {
             let turn = self.start.rotation * seen.rotation.inverse();
-            let way = Vec3::from(to.translation - self.start.translation);
+            // What is carried has its velocity all the same.
+            let began = if self.carries { from } else { self.start };
+            let way = Vec3::from(to.translation - began.translation);
             let (excess, velocity) = excess(turn * self.velocity, way, world_seconds);
-            self.velocity = if holds { velocity } else { way / world_seconds };
-            if holds && excess != Vec3::ZERO {
+            let holds = holds && !self.carries;
+            self.velocity = if asked.is_some() || far {
+                turn * self.velocity
+            } else if holds {
+                velocity
+            } else {
+                way / world_seconds
+            };
+            if holds && excess != Vec3::ZERO && self.start != to {
                 self.start.translation += Vec3A::from(excess);
             }
         }
@@ -346,7 +355,7 @@ pub fn prepare_frames(
     mut cloths: Query<
         (
             Entity,
-            &Transform,
+            &SampledMotion,
             &mut ClothFrame,
             Ref<ClothInertia>,
             &ClothParticles,
@@ -376,7 +385,11 @@ pub fn prepare_frames(
         let holds = !particles.pins.is_empty() || !particles.limited.is_empty();
         let how = (pose.teleported, holds);
         let known = (frame.scale, frame.end.rotation);
-        let ends = [&pose.start, &pose.end].map(|end| split_like(end, own.scale, known));
+        let [first, last] = own.scales();
+        let ends = [
+            split_like(&pose.start, first, known),
+            split_like(&pose.end, last, known),
+        ];
         let error = match ends {
             [Ok((start, _)), Ok((end, scale))] => {
                 frame.set_scale(scale);

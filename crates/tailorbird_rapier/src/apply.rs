@@ -27,6 +27,7 @@ const STILL: f32 = 0.2;
 /// then.
 pub(crate) fn apply_reactions(
     time: Res<Time>,
+    settings: Res<ClothSettings>,
     reactions: Res<ClothReactions>,
     mut worlds: Query<(&RapierContextColliders, &mut RapierRigidBodySet)>,
     mut bodies: Query<(
@@ -64,7 +65,7 @@ pub(crate) fn apply_reactions(
         if let Ok((set, bodies)) = worlds.get(link.0)
             && let Some(collider) = set.colliders.get(handle.0)
         {
-            track.set(pose(collider, bodies));
+            track.set(pose(collider, bodies), seconds, settings.teleport_speed);
         }
     }
 }

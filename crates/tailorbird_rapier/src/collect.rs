@@ -106,7 +106,7 @@ pub(crate) fn push_colliders(
         if !end.translation.is_finite() {
             continue;
         }
-        let start = track.start(end, cloths.seconds());
+        let start = track.start(end, cloths.seconds(), cloths.teleport_speed());
         let shape = collider.shared_shape();
         let aabb = shape.compute_local_aabb();
         let [before, now] = [start, end].map(|at| {

@@ -40,9 +40,9 @@
 //! An attachment holds **rigidly** unless it has a compliance or a break force: then its particles are kinematic, as those of
 //! pins are. They move from where they are at the start of a step to where the entity is at its end, evenly over the
 //! substeps: along a straight line where it moves, along an arc where it turns. Where it does not move they have no
-//! velocity. An entity that moves faster than [`ClothCollider::TELEPORT_SPEED`](crate::collider::ClothCollider::TELEPORT_SPEED)
-//! is put elsewhere: its particles jump, and have no velocity. Where all that holds a cloth jumps, the whole cloth does, with
-//! the motion that it has.
+//! velocity. Where all that holds a cloth [hops](crate::sampling#hops), or moved while cloth did not simulate, the whole cloth is carried
+//! along, with the motion that it has ([`ClothTeleported`](crate::inertia::ClothTeleported) tells of hops). A particle that is not where it
+//! is held, as where one of two hands hops, goes there at up to 30 m/s.
 //!
 //! One with a **compliance** α is a spring of zero length from each particle to its point: they carry F for a gap of α F together,
 //! however many particles that are. Solved together with the lines, so that it adds no stretch. One with a **break
@@ -104,7 +104,7 @@ pub enum AttachmentOffset {
     #[default]
     Keep,
     /// At points of the entity's own space \[m\]: one for each particle, in the order of the selections, or one for all. They
-    /// move there within one step, evenly over the substeps.
+    /// move there within one step, evenly over the substeps; those that are further than half a metre at 30 m/s.
     Points(Vec<Vec3>),
 }
 

@@ -166,7 +166,8 @@ pub fn prepare_attachments(
                 continue;
             };
             let from = state.pose.unwrap_or(end);
-            let start = started.unwrap_or(end);
+            let began = started.unwrap_or(end);
+            let start = began;
             let unfelt = rest.is_unseen() || !step.running();
             let seen = state.seen.replace(end);
             let carried = seen.is_some_and(|seen| seen != start);
@@ -180,10 +181,14 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let excess = if unfelt {
+            let way = start.way_to(&end);
+            if rest.is_unseen() && step.running() {
+                state.velocity = began.way_to(&end) / step.world_seconds();
+            }
+            let excess = if unfelt || way == Vec3::ZERO && teleport {
                 Vec3::ZERO
             } else {
-                excess(state.velocity, start.way_to(&end), step.world_seconds()).0
+                excess(state.velocity, way, step.world_seconds()).0
             };
             let body = Body {
                 attachment,
@@ -192,6 +197,7 @@ pub fn prepare_attachments(
                 end,
                 jumped,
                 excess,
+                told: way == Vec3::ZERO && teleport,
                 pulled: Vec3::ZERO,
                 substeps: 0,
             };
@@ -203,9 +209,11 @@ pub fn prepare_attachments(
             attached.soften(&particles);
             for body in &attached.bodies {
                 if step.running()
+                    && !body.told
                     && let Ok((.., mut state, _)) = attachments.get_mut(body.attachment)
                 {
-                    state.velocity = body.start.way_to(&body.end) / step.world_seconds();
+                    let way = body.start.way_to(&body.end);
+                    state.velocity = way / step.world_seconds();
                 }
             }
             moved = attached.take_along(frame, &mut particles);

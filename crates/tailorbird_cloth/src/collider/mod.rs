@@ -45,7 +45,7 @@
 //! A particle's path through a substep, relative to the shape as it moves and turns, is stopped where it enters a convex shape or a
 //! triangle, at any speed. A triangle mesh that is closed, with triangles that are counter-clockwise seen from outside, is solid: what
 //! starts inside is pushed out, to the nearest side. Any other mesh is a sheet with two sides. A height field is solid below,
-//! however deep. A collider that moves faster than [`ClothCollider::TELEPORT_SPEED`] is taken to be put elsewhere.
+//! however deep. A collider that [hops](crate::sampling#hops) sweeps nothing along.
 //!
 //! # Bodies
 //!
@@ -123,10 +123,6 @@ impl From<ColliderShape> for ClothCollider {
 impl ClothCollider {
     /// The friction of a collider unless another is given [-].
     pub const FRICTION: f32 = 0.5;
-
-    /// A collider that moves faster than this [m/s] is taken to be put elsewhere instead: it does not sweep up the cloth
-    /// between.
-    pub const TELEPORT_SPEED: f32 = 200.0;
 
     /// A ball of this radius \[m\].
     pub fn sphere(radius: f32) -> Self {

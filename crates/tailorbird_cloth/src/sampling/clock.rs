@@ -8,7 +8,7 @@ use bevy_ecs::prelude::*;
 pub(crate) const DEPTH: usize = 8;
 
 /// Over how many frames the longest one is looked for.
-const RECENT: usize = 8;
+const RECENT: usize = 32;
 
 /// A frame that takes longer \[ns\], and three times as long as the one before, is a hitch.
 const HITCH: i64 = 100_000_000;

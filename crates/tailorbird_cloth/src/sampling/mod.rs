@@ -24,7 +24,7 @@
 //! see the hand at  s₁−d, s₂−d            s₃−d, s₄−d  on the way from P₀ to P₁, where d is the length of a frame
 //! ```
 //!
-//! The delay d is the length of the longest of the last eight frames, so that frames which vary do not make what is sampled vary in speed; it
+//! The delay d is the length of the longest of the last 32 frames, so that frames which vary do not make what is sampled vary in speed; it
 //! changes by a tenth of the time that passes at most, but for a frame that is longer than all of them. A frame of more than 0.1 s that takes
 //! three times as long as the one before (an app that was suspended, a level that was loaded) is a pause, in which cloth is carried.
 //!
@@ -150,6 +150,11 @@ impl SampledMotion {
     /// The entity is put elsewhere: whatever way it goes until the next step carries what cloth it holds, and is not felt.
     pub fn teleport(&mut self) {
         self.asked = true;
+    }
+
+    /// The entity's own scale at both ends of the step.
+    pub(crate) fn scales(&self) -> [Vec3; 2] {
+        [self.from.scale, self.now.scale]
     }
 
     /// Begins to look at it: nothing of what was before is felt.

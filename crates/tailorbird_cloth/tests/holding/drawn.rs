@@ -99,3 +99,19 @@ fn each_of_two_targets_moves_its_own_side_and_pins_stay() {
     // Less and less along the row.
     assert!((1..16).all(|i| lifted(i) <= lifted(i - 1) + 1e-6));
 }
+
+#[test]
+fn where_all_that_holds_it_hopped_the_whole_cloth_is_drawn_there() {
+    let mut world = World::new();
+    let hand = world.spawn(Transform::default());
+    let cloth = world.spawn(square(33));
+    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.steps(20);
+    let here = Transform::default();
+    let hopped = Transform::from_xyz(2.0, 0.5, 0.0).with_rotation(Quat::from_rotation_y(1.0));
+    let still = drawn(&world, cloth, here, 1.0, |_| None);
+    let at = drawn(&world, cloth, here, 1.0, |_| Some(hopped));
+    for (from, to) in still.iter().zip(&at) {
+        assert!(to.distance(hopped.transform_point(*from)) < 1e-5);
+    }
+}

@@ -114,8 +114,9 @@ fn it_goes_on_as_one_that_was_seen_all_the_time() {
                 stretch = stretch.max(world.stretch(cloth).max);
             }
             let away = furthest(&before, &shape(&world, cloth));
-            // Its holder has turned by 1 rad meanwhile: the air comes from elsewhere, and it swings round, half a second long.
-            assert!(away < 0.3, "{held:?}, {unseen}: {away}");
+            // Its holder has turned by 1 rad meanwhile, and damping comes from elsewhere: at 3/s and 5 m/s it pulls aside with 12.6 m/s², and
+            // half a second of that would be 1.6 m, did the cape not hang.
+            assert!(away < 0.4, "{held:?}, {unseen}: {away}");
             for i in 0..144 {
                 let speed = world.velocity(cloth, i).length();
                 assert!((speed - RUN).abs() < 1.5, "{held:?}, {unseen}: {speed}");

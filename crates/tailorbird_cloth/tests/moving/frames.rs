@@ -229,6 +229,7 @@ proptest! {
         let size = UVec2::new(4, 8);
         let run = |when: When, lengths: &[f64]| {
             let mut game = Game::new(60.0, hz);
+            game.app.insert_resource(Wind::default());
             let cloth = game.spawn((
                 Cloth::grid(Vec2::new(0.3, 0.8), size),
                 ClothMaterial::cotton(),

@@ -2,8 +2,10 @@
 
 use std::time::Duration;
 
-use bevy_app::{App, FixedUpdate, PostUpdate, TaskPoolOptions, TaskPoolPlugin, Update};
-use bevy_ecs::{component::Mutable, prelude::*};
+use bevy_app::{
+    App, FixedPostUpdate, FixedUpdate, PostUpdate, TaskPoolOptions, TaskPoolPlugin, Update,
+};
+use bevy_ecs::{component::Mutable, prelude::*, schedule::ScheduleLabel};
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
@@ -74,6 +76,15 @@ pub struct Game {
 impl Game {
     /// Of so many frames and steps a second.
     pub fn new(fps: f64, hz: f64) -> Self {
+        Self::with(FixedPostUpdate, fps, hz)
+    }
+
+    /// Whose cloths step once a frame.
+    pub fn stepping_in(schedule: impl ScheduleLabel + Clone, fps: f64) -> Self {
+        Self::with(schedule, fps, fps)
+    }
+
+    fn with(schedule: impl ScheduleLabel + Clone, fps: f64, hz: f64) -> Self {
         let mut app = App::new();
         let mut pools = TaskPoolOptions::default();
         pools.compute.min_threads = 1;
@@ -81,17 +92,14 @@ impl Game {
         let pools = TaskPoolPlugin {
             task_pool_options: pools,
         };
-        app.add_plugins((pools, TimePlugin, ClothPlugin::default()))
+        app.add_plugins((pools, TimePlugin, ClothPlugin::new(schedule.clone())))
             .insert_resource(Wind::vacuum())
             .init_resource::<Film>()
             .insert_resource(Time::<Fixed>::from_hz(hz))
             .add_systems(FixedUpdate, (go(When::FixedUpdate), aim(When::FixedUpdate)))
             .add_systems(Update, (go(When::Update), aim(When::Update)))
             .add_systems(PostUpdate, (go(When::PostUpdate), aim(When::PostUpdate)))
-            .add_systems(
-                bevy_app::FixedPostUpdate,
-                film.after(ClothSystems::Writeback),
-            );
+            .add_systems(schedule, film.after(ClothSystems::Writeback));
         app.finish();
         app.cleanup();
         let frame = Duration::from_secs_f64(1.0 / fps);
@@ -175,9 +183,11 @@ impl Film {
         let rows = self.steps[0].len() / columns;
         let of_row = |row: usize| {
             let mut sum = 0.0;
+            let particles = row * columns..(row + 1) * columns;
             for three in self.steps.windows(3) {
-                for i in row * columns..(row + 1) * columns {
-                    sum += (three[0][i] - 2.0 * three[1][i] + three[2][i]).length();
+                let [a, b, c] = [0, 1, 2].map(|k| &three[k][particles.clone()]);
+                for ((a, b), c) in a.iter().zip(b).zip(c) {
+                    sum += (*a - 2.0 * *b + *c).length();
                 }
             }
             sum / ((self.steps.len() - 2) * columns) as f32
