@@ -49,6 +49,7 @@
 //! | [`mesh`] | cloth made of meshes: garments from glTF, pins that are painted, seams, what is repaired |
 //! | [`cloth::pins`], [`cloth::attachment`], [`cloth::motion`] | what holds a cloth: pins, bones and other entities, targets of an animation |
 //! | [`cloth::inertia`] | a cloth on something that moves: what it feels, teleports, speed limits |
+//! | [`cloth::sampling`] | when what moves is seen: the fixed loop and frames, pauses, hops |
 //! | [`cloth::collider`] | what a cloth collides with: shapes, layers, bodies |
 //! | `tailorbird_avian`, `tailorbird_rapier` | bodies of physics engines |
 //! | [`mesh::rendering`] | how cloth is drawn: every setting, and its cost |

@@ -2,14 +2,18 @@
 //!
 //! ![A banner on a boat that pitches and rolls](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/banner.gif)
 
+mod split;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
-use bevy_transform::components::GlobalTransform;
+
+use split::{check_shear, split_like};
+pub(crate) use split::{shortest, split, split_mirrored};
 
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothStatus, ErrorSource},
     inertia::{ClothInertia, Felt, TeleportMode},
     particles::ClothParticles,
     sampling::{SampledMotion, SampledPoses, excess},
@@ -261,7 +265,7 @@ impl ClothFrame {
             } else {
                 way / world_seconds
             };
-            if holds && excess != Vec3::ZERO && self.start != to {
+            if holds && self.start != to {
                 self.start.translation += Vec3A::from(excess);
             }
         }
@@ -270,79 +274,6 @@ impl ClothFrame {
         self.current = self.start;
         self.offset = Vec3::ZERO;
     }
-}
-
-/// The same rotation by no more than π.
-pub(crate) fn shortest(rotation: Quat) -> Quat {
-    if rotation.w < 0.0 {
-        -rotation
-    } else {
-        rotation
-    }
-}
-
-/// A world transform as rigid frame and scale, or what is wrong with it.
-pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
-    let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-    let matrix = transform.affine();
-    if !matrix.is_finite() {
-        return Err(ClothErrorKind::Transform {
-            value: matrix.to_string(),
-        });
-    }
-    if scale.to_array().contains(&0.0) {
-        return Err(ClothErrorKind::Scale { value: scale });
-    }
-    Ok((Isometry3d::new(translation, rotation.normalize()), scale))
-}
-
-/// [`split`] with signs of the scale as they are wanted, where the transform mirrors as that does, else as in `known` where that does,
-/// else so that it is turned as little as it may be against `rotation`. A matrix does not tell them.
-fn split_like(
-    transform: &GlobalTransform,
-    wanted: Vec3,
-    (known, rotation): (Vec3, Quat),
-) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
-    let (place, scale) = split(transform)?;
-    let ways = [Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-        if axis == Vec3::ONE {
-            (place.rotation, scale)
-        } else {
-            // Half a turn about one axis mirrors the other two.
-            let turn = Quat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
-            (place.rotation * turn, scale * (2.0 * axis - 1.0))
-        }
-    });
-    let mirrors = |like: Vec3| {
-        let signs = like.signum();
-        ways.into_iter().find(|(_, scale)| scale.signum() == signs)
-    };
-    let near = |way: &(Quat, Vec3)| way.0.dot(rotation).abs();
-    let (rotation, scale) = mirrors(wanted)
-        .or_else(|| mirrors(known))
-        .unwrap_or_else(|| {
-            let nearest = |a: (Quat, Vec3), b| if near(&b) > near(&a) + 1e-3 { b } else { a };
-            ways.into_iter().fold(ways[0], nearest)
-        });
-    Ok((Isometry3d::new(place.translation, rotation), scale))
-}
-
-/// [`split`], with the scale's signs as given.
-pub(crate) fn split_mirrored(
-    transform: &GlobalTransform,
-    signs: Vec3,
-) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
-    split_like(transform, signs, (signs, Quat::IDENTITY))
-}
-
-/// What is wrong with a world transform whose axes are not at right angles.
-fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
-    /// Of rounding, several parents deep.
-    const MOST: f32 = 1e-3;
-    let axes = transform.affine().matrix3;
-    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3A::normalize_or_zero);
-    let value = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
-    (value > MOST).then_some(ClothErrorKind::Shear { value, most: MOST })
 }
 
 /// Reads where the entities of the cloths are.
@@ -386,22 +317,14 @@ pub fn prepare_frames(
         let how = (pose.teleported, holds);
         let known = (frame.scale, frame.end.rotation);
         let [first, last] = own.scales();
-        let ends = [
-            split_like(&pose.start, first, known),
-            split_like(&pose.end, last, known),
-        ];
-        let error = match ends {
-            [Ok((start, _)), Ok((end, scale))] => {
+        let error = match split_like(&pose.end, last, known) {
+            Ok((end, scale)) => {
+                let start = split_like(&pose.start, first, known).map_or(end, |(start, _)| start);
                 frame.set_scale(scale);
                 frame.place([start, end], how, seconds);
                 check_shear(&pose.end)
             }
-            [Err(_), Ok((end, scale))] => {
-                frame.set_scale(scale);
-                frame.place([end; 2], how, seconds);
-                check_shear(&pose.end)
-            }
-            [_, Err(error)] => {
+            Err(error) => {
                 let stay = frame.end;
                 if frame.placed {
                     frame.place([stay; 2], (false, holds), seconds);

@@ -56,6 +56,7 @@
 //! attachment before a motion constraint and before the player's hand, a later attachment of [`ClothAttachments`] before an
 //! earlier one. Springs add up.
 
+mod carry;
 mod held;
 mod pose;
 mod prepare;

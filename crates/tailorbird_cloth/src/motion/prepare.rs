@@ -43,7 +43,7 @@ pub struct MotionState {
     backstop_radius: Numbers,
     /// At the start and at the end of the step, in the cloth's frame \[m\].
     #[reflect(ignore)]
-    targets: [Points; 2],
+    pub(super) targets: [Points; 2],
     #[reflect(ignore)]
     normals: [Points; 2],
     /// Particles whose largest distance is 0.
@@ -291,26 +291,6 @@ impl MotionState {
         let [start, end] = &mut self.normals;
         start.copy_from(end);
         self.moving = false;
-    }
-
-    /// Takes each particle along with its target, where that was put elsewhere.
-    fn take_along(&self, particles: &mut ClothParticles) {
-        let [start, end] = &self.targets;
-        let ClothParticles {
-            position,
-            previous_position,
-            step_position,
-            inv_mass,
-            limited,
-            ..
-        } = particles;
-        let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
-        for i in free.chain(limited.iter().map(|&i| i as usize)) {
-            let way = end.get(i) - start.get(i);
-            for points in [&mut *position, &mut *previous_position, &mut *step_position] {
-                points.add(i, way);
-            }
-        }
     }
 
     /// Reads valid targets.

@@ -4,9 +4,10 @@ use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-use super::ClothMotionTargets;
+use super::{ClothMotionTargets, MotionState};
 use crate::{
     memory::heap,
+    particles::ClothParticles,
     sampling::{FrameClock, FrameKind, HopDetector, LAPSE},
     settings::ClothSettings,
 };
@@ -174,6 +175,28 @@ impl TargetSamples {
         ways.map(|(from, to)| from.distance_squared(*to))
             .fold(0.0, f32::max)
             .sqrt()
+    }
+}
+
+impl MotionState {
+    /// Takes each particle along with its target, where that was put elsewhere.
+    pub(super) fn take_along(&self, particles: &mut ClothParticles) {
+        let [start, end] = &self.targets;
+        let ClothParticles {
+            position,
+            previous_position,
+            step_position,
+            inv_mass,
+            limited,
+            ..
+        } = particles;
+        let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
+        for i in free.chain(limited.iter().map(|&i| i as usize)) {
+            let way = end.get(i) - start.get(i);
+            for points in [&mut *position, &mut *previous_position, &mut *step_position] {
+                points.add(i, way);
+            }
+        }
     }
 }
 

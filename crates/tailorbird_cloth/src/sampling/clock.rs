@@ -20,7 +20,7 @@ pub struct FrameClock {
     /// When the things were where they were last seen, the last frame first.
     times: [i64; DEPTH],
     known: usize,
-    /// The lengths of the last frames, hitches left out.
+    /// The lengths of the last frames, those left out that are longer than a hitch.
     lengths: [i64; RECENT],
     /// The length of the last frame.
     length: i64,
@@ -150,13 +150,16 @@ impl FrameClock {
     /// No later than it must be: the last frames must not end before the moment that is sampled, or things would stand still, and a
     /// delay that varied with them would make speeds vary.
     fn plan_delay(&mut self, length: i64, after_hitch: bool) {
-        if !self.hitch {
+        if length <= HITCH {
             self.lengths.rotate_right(1);
             self.lengths[0] = length;
         }
         let longest = self.lengths.iter().copied().max().unwrap_or(length);
         let from = if after_hitch { longest } else { self.delay[1] };
-        let mut to = length.max(longest).max(from - length / 10);
+        // What is too much goes within a quarter of a second, by the exponential.
+        let excess = i128::from((from - longest).max(0)) * i128::from(length) / 250_000_000;
+        let less = (length / 10).max(excess as i64).min(length / 2);
+        let mut to = length.max(longest).max(from - less);
         if self.known == DEPTH {
             to = to.min(self.span[1] - self.times[DEPTH - 1]);
         }
@@ -230,6 +233,24 @@ mod tests {
             assert_eq!(clock.kind == FrameKind::Hitch, frame == 21, "{frame}");
             if frame != 20 {
                 assert_eq!(clock.delay[1], 16_000_000, "{frame}");
+            }
+        }
+    }
+
+    /// Where a level is loaded, several frames take long.
+    #[test]
+    fn long_frames_do_not_delay_what_comes_after_them_for_long() {
+        let mut clock = FrameClock::default();
+        let (mut end, mut since) = (0, 0);
+        for frame in 0..200 {
+            let length = [250, 180, 200, 150]
+                .get(frame)
+                .map_or(16_000_000, |ms| ms * 1_000_000);
+            end += length;
+            since += if frame < 4 { 0 } else { length };
+            clock.begin_frame(at(end), at(length));
+            if since > 1_000_000_000 {
+                assert!(clock.delay[1] < 25_000_000, "{frame}: {}", clock.delay[1]);
             }
         }
     }

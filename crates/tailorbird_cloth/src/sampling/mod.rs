@@ -24,8 +24,8 @@
 //! see the hand at  s₁−d, s₂−d            s₃−d, s₄−d  on the way from P₀ to P₁, where d is the length of a frame
 //! ```
 //!
-//! The delay d is the length of the longest of the last 32 frames, so that frames which vary do not make what is sampled vary in speed; it
-//! changes by a tenth of the time that passes at most, but for a frame that is longer than all of them. A frame of more than 0.1 s that takes
+//! The delay d is the length of the longest of the last 32 frames, so that frames which vary do not make what is sampled vary in speed. It
+//! grows at once, and shrinks within a quarter of a second. A frame of more than 0.1 s that takes
 //! three times as long as the one before (an app that was suspended, a level that was loaded) is a pause, in which cloth is carried.
 //!
 //! The poses that physics engines restore at the start of the fixed loop, and ease after it (`TransformInterpolation` of avian), are
@@ -64,6 +64,7 @@
 //!
 //! A change of parents is a hop as well. A world whose origin is shifted hops as a whole, which nobody feels.
 
+mod blow;
 mod clock;
 mod curve;
 mod hop;
@@ -75,6 +76,7 @@ use bevy_reflect::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
 use bevy_transform::{components::Transform, helper::TransformHelper};
 
+pub(crate) use blow::excess;
 use clock::DEPTH;
 pub use clock::FrameClock;
 pub(crate) use clock::FrameKind;
@@ -96,25 +98,6 @@ pub(crate) struct FixedLoopEnds;
 
 /// What the fixed loop has not moved for so many steps is moved between frames.
 pub(crate) const LAPSE: u8 = 15;
-
-/// What holds a whole cloth does not pull it with more than this [m/s²]: 2.5 m/s from one step of 1/60 s to the next.
-const MOST_ACCELERATION: f32 = 150.0;
-
-/// The part of a way in a step \[m\] that carries cloth instead of pulling it, after a step with this velocity [m/s]; and the velocity of
-/// the rest.
-pub(crate) fn excess(before: Vec3, way: Vec3, seconds: f32) -> (Vec3, Vec3) {
-    if seconds <= 0.0 {
-        return (Vec3::ZERO, before);
-    }
-    let velocity = way / seconds;
-    let change = velocity - before;
-    let most = MOST_ACCELERATION * seconds;
-    if change.length_squared() <= most * most {
-        return (Vec3::ZERO, velocity);
-    }
-    let felt = before + change.clamp_length_max(most);
-    (way - felt * seconds, felt)
-}
 
 /// How an entity moves, as cloth sees it. On all that holds, carries, pushes and blows at cloth, and on their parents. See the
 /// [module](self).
