@@ -77,7 +77,7 @@ fn c_puts_the_other_solver_beside_and_takes_it_away() {
         let mut app = demo(scene);
         let alone = all::<With<SceneEntity>>(&mut app).len();
         tap(&mut app, KeyCode::KeyC);
-        frames(&mut app, 3);
+        frames(&mut app, 20);
         assert_eq!(
             solvers(&mut app),
             [ClothSolver::Chains, ClothSolver::GaussSeidel],

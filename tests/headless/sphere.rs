@@ -40,7 +40,9 @@ proptest! {
         speed in point(8.0),
         substeps in 1u32..=8,
     ) {
-        let mut sim = Sim::new().with_passes(substeps, 2);
+        // Some begin inside.
+        let at_once = |s: &mut ClothSettings| s.overlap_speed = f32::INFINITY;
+        let mut sim = Sim::new().with_passes(substeps, 2).with_settings(at_once);
         sim.spawn((ClothCollider::sphere(radius), Transform::from_translation(center)));
         let cloth = sim.spawn((
             square(8),
@@ -118,7 +120,8 @@ fn flown_through(substeps: u32, speed: f32, radius: f32) -> f32 {
     });
     sim.add_systems(ClothSubstep, chase.after(ClothSubstepSystems::Collide));
     // The first step knows no motion yet.
-    let steps = (4.0 / speed * HZ as f32) as usize;
+    // Until it is 0.9 m beyond: what it has drawn out to the size of the cloth, it goes through.
+    let steps = (2.4 / speed * HZ as f32) as usize;
     for k in 1..=steps {
         let now = start + velocity * (k as f32 * DT);
         sim.edit::<Transform>(sphere, |t| t.translation = now);

@@ -56,6 +56,7 @@ pub mod collider;
 mod crew;
 pub mod diagnostics;
 pub mod drawn;
+mod effort;
 pub mod error;
 pub mod forces;
 pub mod frame;

@@ -154,6 +154,15 @@ impl<'a> IntoIterator for &'a mut Numbers {
     }
 }
 
+/// A number from −1 to 1 that looks random, always the same for the same key.
+pub(crate) fn unit_of(key: u32) -> f32 {
+    let mut z = key.wrapping_add(0x9e37_79b9);
+    z = (z ^ (z >> 16)).wrapping_mul(0x21f0_aaad);
+    z = (z ^ (z >> 15)).wrapping_mul(0x735a_2d97);
+    z ^= z >> 15;
+    (z >> 8) as f32 / (1u32 << 23) as f32 - 1.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
 use crate::{
+    effort::Effort,
     frame::ClothFrame,
     memory::heap,
     numbers::Numbers,
@@ -55,6 +56,8 @@ pub struct ClothParticles {
     /// Contacts in this substep, noted before the constraints are solved.
     #[reflect(ignore)]
     pub(crate) contacts: Contacts,
+    /// How it stands with what the cloth is asked for.
+    pub(crate) effort: Effort,
     /// Mean places of runs of particles in the last while \[m\], in the cloth's frame.
     #[reflect(ignore)]
     pub(crate) calm: Vec<Vec3>,
@@ -341,6 +344,7 @@ impl ClothParticles {
     /// Notes where the step starts.
     pub(crate) fn begin_step(&mut self) {
         self.step_position.copy_from(&self.position);
+        self.contacts.overlaps = false;
         self.contacts.around.begin_step();
     }
 

@@ -59,6 +59,8 @@ pub struct ClothSettings {
     /// motion finer, at proportional cost. `None` is as many as the finest cloth needs: see
     /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
     pub substeps: Option<u32>,
+    /// The most substeps that a cloth takes where their number is not set: it takes more than at rest in a hand and under bodies.
+    pub most_substeps: u32,
     /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
     /// in few.
     pub iterations: u32,
@@ -70,6 +72,13 @@ pub struct ClothSettings {
     /// For cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
     /// everything.
     pub time_scale: f32,
+    /// How fast what is inside a collider is pushed out of it, where it did not go in by its own motion: because one of the two
+    /// appeared there, or was put there [m/s]. It gets no velocity of that.
+    #[cfg_attr(
+        feature = "serialize",
+        serde(deserialize_with = "crate::unbounded::number")
+    )]
+    pub overlap_speed: f32,
     /// What is put elsewhere, and what moves [m/s]; 30 by default, infinity where nothing is. A way whose velocity differs from the one
     /// before by more than that one's magnitude and this is a hop, of a cloth's entity, of what holds it, of a collider, of a target of a
     /// motion constraint: cloth is taken along, and feels the motion before it alone. See [`sampling`](crate::sampling#hops).
@@ -135,9 +144,11 @@ impl Default for ClothSettings {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             substeps: None,
+            most_substeps: 64,
             iterations: 1,
             instruction_set: InstructionSet::Auto,
             time_scale: 1.0,
+            overlap_speed: 1.0,
             teleport_speed: Self::TELEPORT_SPEED,
             paused: false,
             pending_steps: 0,
@@ -179,6 +190,18 @@ impl ClothSettings {
                 self.substeps.unwrap_or(1) as f32,
                 |v| (1.0..=most).contains(&v),
                 "1 to 1000",
+            ),
+            ClothErrorKind::number(
+                "ClothSettings.most_substeps",
+                self.most_substeps as f32,
+                |v| (1.0..=most).contains(&v),
+                "1 to 1000",
+            ),
+            ClothErrorKind::number(
+                "ClothSettings.overlap_speed",
+                self.overlap_speed,
+                |v| v >= 0.0,
+                "at least 0 [m/s]",
             ),
             ClothErrorKind::number(
                 "ClothSettings.iterations",

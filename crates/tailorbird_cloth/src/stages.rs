@@ -39,11 +39,18 @@ pub(crate) struct Substep<'a> {
     pub iterations: u32,
     /// Acceleration of every particle [m/s²], in world axes.
     pub gravity: Vec3,
+    /// How fast what is inside a collider is pushed out of it [m/s].
+    pub overlap_speed: f32,
     /// Who works on it.
     pub crew: Crew<'a>,
 }
 
 impl Substep<'_> {
+    /// How far what is inside a collider is pushed out of it, each of the two times in a substep \[m\].
+    pub fn out(&self) -> f32 {
+        0.5 * self.overlap_speed * self.seconds
+    }
+
     /// How many are left, this one included.
     pub fn left(&self) -> u32 {
         self.count - self.index

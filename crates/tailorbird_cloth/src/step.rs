@@ -33,6 +33,8 @@ pub struct ClothStep {
     pub(crate) substep: u32,
     pub(crate) iterations: u32,
     pub(crate) gravity: Vec3,
+    pub(crate) overlap_speed: f32,
+    pub(crate) most_substeps: u32,
     pub(crate) elapsed: f64,
     pub(crate) steps: u64,
     pub(crate) running: bool,
@@ -146,11 +148,12 @@ impl ClothStep {
         let automatic = || {
             let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
             let loaded = (unloaded as f32 * self.loaded(particles)).ceil() as u32;
-            if particles.grabbed.is_some() {
+            let held = if particles.grabbed.is_some() {
                 loaded.max(solver.substeps_in_hand(topology))
             } else {
                 loaded
-            }
+            };
+            held.min(self.most_substeps)
         };
         self.fixed_substeps.unwrap_or_else(automatic).max(1)
     }
@@ -176,6 +179,7 @@ impl ClothStep {
             count: count.max(1),
             iterations: self.iterations,
             gravity: self.gravity,
+            overlap_speed: self.overlap_speed,
             crew,
         }
     }
@@ -235,6 +239,8 @@ pub fn begin_step(
     step.level = SimdLevel(valid.instruction_set.level());
     step.iterations = valid.iterations;
     step.gravity = valid.gravity;
+    step.overlap_speed = valid.overlap_speed;
+    step.most_substeps = valid.most_substeps;
     step.running = step.seconds > 0.0 && (!settings.paused || single_step);
     step.steps += u64::from(step.running);
     step.whole = step.running && own.are_all(&schedules);

@@ -50,6 +50,9 @@ struct Coming {
     fields: Arc<OnceLock<Fields>>,
 }
 
+/// How much longer still tethers are made where pins are further apart than the sheet between them is long, at most [-].
+const ROOM_BEYOND: f32 = 0.02;
+
 type Fields = [Option<Field>; ClothTethers::MOST];
 
 /// How many ways from pins to particles are measured within a step, at most.
@@ -118,10 +121,23 @@ impl ClothTethers {
         heap(&self.pins) + ways.sum::<usize>()
     }
 
-    /// Where the pins are, and the ways from each.
-    pub(crate) fn anchors(&self, position: &Points) -> Anchors<'_> {
+    /// How much further a pin is from another than the sheet between them is long, at most [-]; 1 where none is.
+    fn longer(&self, field: &Field, position: &Points) -> f32 {
+        let at = position.get(field.pin as usize);
+        let others = self.fields.iter().flatten();
+        let far = others.filter_map(|other| {
+            let way = field.ways.length(other.pin).filter(|way| *way > 0.0)?;
+            Some(at.distance(position.get(other.pin as usize)) / way)
+        });
+        let most = far.fold(1.0, f32::max);
+        most * (1.0 + (most - 1.0).min(ROOM_BEYOND))
+    }
+
+    /// Where the pins are, and were at the start of the substep, and the ways from each.
+    pub(crate) fn anchors(&self, position: &Points, previous: &Points) -> Anchors<'_> {
         let fields = self.fields.each_ref().map(Option::as_ref);
         let at = |field: &Field| position.get(field.pin as usize);
+        let before = |field: &Field| previous.get(field.pin as usize);
         if let Some(Some(Field {
             ways: Ways::Straight(lattice, _),
             ..
@@ -131,6 +147,8 @@ impl ClothTethers {
             return Anchors::Straight(fields.map(|field| match &field?.ways {
                 Ways::Straight(_, ways) if usable => Some(Tether {
                     anchor: at(field?),
+                    anchor_before: before(field?),
+                    longer: self.longer(field?, position),
                     ways: *ways,
                 }),
                 _ => None,
@@ -139,6 +157,8 @@ impl ClothTethers {
         Anchors::Lengths(fields.map(|field| match &field?.ways {
             Ways::Lengths(lengths) if lengths.len() == position.len() => Some(Tether {
                 anchor: at(field?),
+                anchor_before: before(field?),
+                longer: self.longer(field?, position),
                 ways: Reading(lengths),
             }),
             _ => None,

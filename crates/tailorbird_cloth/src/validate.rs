@@ -3,6 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
+use tracing::warn;
 
 use crate::{
     cloth::{Cloth, ClothShape},
@@ -122,6 +123,15 @@ impl ClothStagesItem<'_, '_> {
     /// What [`guard_finite`] does for one cloth.
     pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
         let particles = &*self.particles;
+        let strained = particles.effort.unmet();
+        let entity = self.entity;
+        let status = self.status.bypass_change_detection();
+        if strained != status.strained() && status.note_strained(strained) {
+            let percent = strained * 100.0;
+            warn!(
+                "{entity}: {percent:.0} % of the edges are longer than the fabric lets them be: holds or colliders ask for more"
+            );
+        }
         if particles.position.is_finite() && particles.previous_position.is_finite() {
             return;
         }

@@ -1,5 +1,8 @@
 //! Contacts of the particles of a cloth with one collider.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Mat3, Vec3};
 use fearless_simd::Level;
 
@@ -16,7 +19,7 @@ use crate::{
     solver::kernels::{
         ball::{Ball, Ground},
         capsule::Capsule,
-        contact::{Phase, Touching},
+        contact::{Out, Phase, Touching},
         cuboid::Cuboid,
         cylinder::Cylinder,
         half_space::{self, MovingHalfSpace},
@@ -94,7 +97,12 @@ macro_rules! with_solid {
 }
 
 /// The particles of a cloth, as kernels take them.
-fn touching(particles: &mut ClothParticles, phase: Phase, note: bool) -> Touching<'_> {
+fn touching<'a>(
+    particles: &'a mut ClothParticles,
+    phase: Phase,
+    note: bool,
+    out: Out<'a>,
+) -> Touching<'a> {
     let ClothParticles {
         position,
         previous_position,
@@ -116,6 +124,7 @@ fn touching(particles: &mut ClothParticles, phase: Phase, note: bool) -> Touchin
             )
         }),
         phase,
+        out,
     }
 }
 
@@ -144,7 +153,30 @@ fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     }
 }
 
+/// What is faster than this goes through a cloth that it has drawn out to [`DRAWN_OUT`] [m/s].
+const FAST: f32 = 2.0;
+
+/// A single edge that is as long as the cloth is large, times this [-].
+const DRAWN_OUT: f32 = 1.0;
+
 impl MovingCollider {
+    /// What tells it from others.
+    pub fn key(&self) -> (Entity, (u32, u32)) {
+        (self.entity, self.part)
+    }
+
+    /// Whether it goes through the cloth, at this speed [m/s].
+    fn passes(&self, speed: f32, around: &mut Around) -> bool {
+        let at = around.passing.iter().position(|key| *key == self.key());
+        if let Some(at) = at
+            && speed < 0.5 * FAST
+        {
+            around.passing.swap_remove(at);
+            return false;
+        }
+        at.is_some()
+    }
+
     /// Keeps the particles of one cloth out.
     pub(super) fn collide(
         &self,
@@ -155,10 +187,24 @@ impl MovingCollider {
     ) {
         let (frame, material) = (&*cloth.frame, cloth.material);
         let way = frame.way_to_frame(self.start, self.end, substep.fractions());
+        let far = way[0].translation.distance(way[1].translation);
+        if self.passes(far / substep.seconds, around) {
+            return;
+        }
         let margin = self.margin + material.margin();
         let friction = combined_friction(self.friction, material.friction);
         let motion = motion(way, friction);
         let turn = turn(way);
+        // What motion constraints pull back into a collider did not go there by itself either.
+        let overlaps = AtomicBool::new(false);
+        let out = Out {
+            most: if cloth.motion.is_some() {
+                f32::INFINITY
+            } else {
+                substep.out()
+            },
+            overlaps: &overlaps,
+        };
         let particles = &mut *cloth.particles;
         let len = particles.len();
         let mut start = 0;
@@ -169,16 +215,21 @@ impl MovingCollider {
                 phase,
                 substep,
                 (&motion, turn, margin),
-                touching(particles, phase, true),
+                touching(particles, phase, true, out),
                 around.seen(self),
                 range.clone(),
             );
             if any {
+                let drawn_out = particles.effort.longest > DRAWN_OUT;
+                if drawn_out && far > FAST * substep.seconds {
+                    around.passing.push(self.key());
+                }
                 particles.contacts.any |= phase == Phase::Approach;
                 let points = [&particles.position, &particles.previous_position];
                 around.update(substep.level, points, range);
             }
         }
+        particles.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some(held) = particles.grabbed {
             self.collide_held(held.particle as usize, &motion, margin, particles, around);
         }
@@ -241,7 +292,11 @@ impl MovingCollider {
         range: std::ops::Range<usize>,
         found: &mut Vec<usize>,
     ) {
-        let touching = touching(particles, Phase::Final, false);
+        let out = Out {
+            most: f32::INFINITY,
+            overlaps: &AtomicBool::new(false),
+        };
+        let touching = touching(particles, Phase::Final, false, out);
         let seen = around.seen(self);
         with_solid!(&self.solid, margin, seen, |solid| {
             solid::find(&solid, motion, touching, range, |i| found.push(i));

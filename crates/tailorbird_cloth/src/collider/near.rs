@@ -2,6 +2,7 @@
 
 use std::{hash::Hash, ops::Range};
 
+use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
 
@@ -44,6 +45,8 @@ pub(crate) struct Around {
     pub sights: Vec<Sight>,
     /// Particles that touch something.
     pub found: Vec<usize>,
+    /// Colliders that go through the cloth, as they tore it along faster than it can follow.
+    pub passing: Vec<(Entity, (u32, u32))>,
 }
 
 fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
@@ -67,6 +70,7 @@ impl Around {
         crate::memory::heap(&self.near)
             + crate::memory::heap(&self.blocks)
             + crate::memory::heap(&self.found)
+            + crate::memory::heap(&self.passing)
             + crate::memory::heap(&self.couplings)
             + self.sights.iter().map(Sight::memory_bytes).sum::<usize>()
     }
@@ -118,6 +122,8 @@ impl Around {
             }
         }
         let near = &self.near;
+        self.passing
+            .retain(|key| near.iter().any(|k| colliders.colliders[*k].key() == *key));
         self.sights
             .retain(|sight| near.iter().any(|k| sight.is_of(&colliders.colliders[*k])));
     }

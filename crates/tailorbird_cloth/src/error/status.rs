@@ -46,6 +46,7 @@ pub enum ErrorSource {
 #[reflect(Component, Default)]
 pub struct ClothStatus {
     entries: Vec<(ErrorSource, ClothErrorKind)>,
+    strained: f32,
 }
 
 impl ClothStatus {
@@ -57,6 +58,19 @@ impl ClothStatus {
     /// Whether nothing is wrong.
     pub fn is_ok(&self) -> bool {
         self.entries.is_empty()
+    }
+
+    /// Which part of a cloth's edges is longer than its fabric lets them be [-], while it is asked for more than the fabric has: posts that
+    /// stand too far apart, a body within it. 0 where it is not, or is for a moment. It is logged when it begins.
+    pub fn strained(&self) -> f32 {
+        self.strained
+    }
+
+    /// Notes which part is strained; whether it was not before.
+    pub(crate) fn note_strained(&mut self, strained: f32) -> bool {
+        let began = self.strained == 0.0 && strained > 0.0;
+        self.strained = strained;
+        began
     }
 
     /// Whether this check has found nothing.

@@ -5,11 +5,11 @@ use fearless_simd::Level;
 use super::kernels::{
     lanes::{Shared, SharedPoints},
     lattice::{self, Sheet},
-    line::LineStiffness,
+    line::{Give, LineStiffness},
     mesh,
     rigid_motion::RigidMotion,
     shear::{self, Shear},
-    squeeze, tether,
+    tether,
     verlet::Verlet,
     viscosity::{self, Beside, Motion},
 };
@@ -17,7 +17,6 @@ use crate::{
     crew::Crew,
     material::ClothMaterial,
     particles::ClothParticles,
-    points::Points,
     stages::Substep,
     tethers::{Anchors, ClothTethers},
     topology::{Topology, lattice::Lattice},
@@ -46,6 +45,26 @@ pub(crate) struct Pass<'a> {
     pub number: u32,
 }
 
+impl<'a> Pass<'a> {
+    /// The pass `k` of a substep.
+    pub fn of(
+        substep: &Substep<'a>,
+        topology: &'a Topology,
+        material: &'a ClothMaterial,
+        k: u32,
+    ) -> Self {
+        Self {
+            level: substep.level,
+            crew: substep.crew,
+            topology,
+            material,
+            seconds: substep.seconds,
+            gravity: substep.gravity.length(),
+            number: substep.index + k,
+        }
+    }
+}
+
 impl Pass<'_> {
     /// α̃ = α/h² [1/kg].
     pub(super) fn alpha_tilde(&self, compliance: f32) -> f32 {
@@ -67,16 +86,21 @@ impl Pass<'_> {
         }
     }
 
-    /// How much longer than at rest tethers are [-].
-    fn slack(&self) -> f32 {
-        let material = self.material;
-        let size = match (&self.topology.lattice, &self.topology.fabric) {
+    /// How large the cloth is \[m\].
+    pub(super) fn size(&self) -> f32 {
+        match (&self.topology.lattice, &self.topology.fabric) {
             (Some(lattice), _) => {
                 lattice.rows.max(lattice.columns) as f32 * lattice.spacing.max_element()
             }
             (None, Some(fabric)) => fabric.size(),
             (None, None) => 0.0,
-        };
+        }
+    }
+
+    /// How much longer than at rest tethers are [-].
+    pub fn slack(&self) -> f32 {
+        let material = self.material;
+        let size = self.size();
         let slack = if self.topology.flat {
             SLACK
         } else {
@@ -87,6 +111,34 @@ impl Pass<'_> {
         let room = STRETCH_ROOM * compliance * weight;
         // Not finite or negative: the material is reported elsewhere.
         slack + if room > 0.0 { room.min(1e6) } else { 0.0 }
+    }
+
+    /// The particles as columns and rows, and where they were at the start of the substep.
+    fn sheet<'a>(
+        &self,
+        particles: &'a mut ClothParticles,
+        [columns, rows]: [usize; 2],
+    ) -> (Sheet<'a>, SharedPoints<'a>) {
+        let ClothParticles {
+            position,
+            previous_position,
+            inv_mass,
+            contacts,
+            effort,
+            ..
+        } = particles;
+        let sheet = Sheet {
+            columns,
+            rows,
+            position: SharedPoints::new(position),
+            inv_mass: Shared::new(inv_mass),
+            normal: contacts
+                .any
+                .then(|| SharedPoints::new(&mut contacts.normal)),
+            pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
+            give: self.give(*effort, contacts.any),
+        };
+        (sheet, SharedPoints::new(previous_position))
     }
 
     pub(super) fn is_odd(&self) -> bool {
@@ -113,20 +165,24 @@ impl Pass<'_> {
             let place = particles.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
-        match tethers.anchors(&particles.position) {
+        match tethers.anchors(&particles.position, &particles.previous_position) {
             Anchors::Straight(tethers) => {
                 if let Some(lattice) = &topology.lattice {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-                    let sheet = sheet(particles, [columns, rows]);
+                    let effort = particles.effort;
+                    let (sheet, start) = self.sheet(particles, [columns, rows]);
+                    let how = (slack, self.recovery(effort, start));
                     crew.share(0..rows, |rows| {
-                        tether::solve_straight(level, sheet, &tethers, slack, rows);
+                        tether::solve_straight(level, sheet, &tethers, how, rows);
                     });
                 }
             }
             Anchors::Lengths(tethers) => {
-                let sheet = sheet(particles, [all, 1]);
+                let effort = particles.effort;
+                let (sheet, start) = self.sheet(particles, [all, 1]);
+                let how = (slack, self.recovery(effort, start));
                 crew.share(0..all, |range| {
-                    tether::solve(level, sheet, &tethers, slack, range);
+                    tether::solve(level, sheet, &tethers, how, range);
                 });
             }
         }
@@ -145,7 +201,7 @@ impl Pass<'_> {
     fn solve_lattice(&self, lattice: &Lattice, particles: &mut ClothParticles) {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let (level, odd) = (self.level, self.is_odd());
-        let sheet = sheet(particles, [columns, rows]);
+        let (sheet, _) = self.sheet(particles, [columns, rows]);
         let [dx, dy] = lattice.spacing.to_array();
         let shear = Shear {
             rest_length: dx.hypot(dy),
@@ -179,98 +235,6 @@ impl Pass<'_> {
         if !odd {
             solve_columns();
         }
-    }
-}
-
-/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
-/// its momentum.
-pub(crate) fn calm(level: Level, topology: &Topology, particles: &mut ClothParticles) {
-    if particles.is_empty() || particles.len() != topology.particles() {
-        return;
-    }
-    let free = !particles.inv_mass.contains(&0.0);
-    let ClothParticles {
-        position,
-        previous_position,
-        mass,
-        inv_mass,
-        ..
-    } = particles;
-    if let Some(lattice) = &topology.lattice {
-        if !squeeze::any(level, bare(lattice, position, inv_mass), lattice.spacing) {
-            return;
-        }
-        let whole = RigidMotion::of_all(mass, position, previous_position);
-        let previous = SharedPoints::new(previous_position);
-        let sheet = bare(lattice, position, inv_mass);
-        squeeze::stop(level, sheet, previous, lattice.spacing, whole);
-        if free {
-            give_back(whole, mass, position, previous_position);
-        }
-    } else if let Some(fabric) = &topology.fabric {
-        let is_squeezed = |position: &Points, [a, b]: [u32; 2], rest_length: f32| {
-            let [a, b] = [a, b].map(|i| position.get(i as usize));
-            a.distance_squared(b) < squeeze::LEAST * rest_length * rest_length
-        };
-        let mut edges = fabric.chains().edges();
-        if !edges.any(|(ends, rest_length)| is_squeezed(position, ends, rest_length)) {
-            return;
-        }
-        let whole = RigidMotion::of_all(mass, position, previous_position);
-        for (ends, rest_length) in fabric.chains().edges() {
-            if is_squeezed(position, ends, rest_length) {
-                for i in ends.map(|i| i as usize) {
-                    if inv_mass[i] > 0.0 {
-                        let place = position.get(i);
-                        previous_position.set(i, place - whole.at(place));
-                    }
-                }
-            }
-        }
-        if free {
-            give_back(whole, mass, position, previous_position);
-        }
-    }
-}
-
-/// A sheet without contacts.
-fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]) -> Sheet<'a> {
-    Sheet {
-        columns: lattice.columns as usize,
-        rows: lattice.rows as usize,
-        position: SharedPoints::new(position),
-        inv_mass: Shared::new(inv_mass),
-        normal: None,
-        pressed: None,
-    }
-}
-
-/// Gives all particles what is missing of the motion of the whole as it was.
-fn give_back(was: RigidMotion, mass: &[f32], position: &Points, previous: &mut Points) {
-    let is = RigidMotion::of_all(mass, position, previous);
-    for i in 0..mass.len() {
-        let place = position.get(i);
-        previous.set(i, previous.get(i) - (was.at(place) - is.at(place)));
-    }
-}
-
-/// The particles as columns and rows.
-fn sheet(particles: &mut ClothParticles, [columns, rows]: [usize; 2]) -> Sheet<'_> {
-    let ClothParticles {
-        position,
-        inv_mass,
-        contacts,
-        ..
-    } = particles;
-    Sheet {
-        columns,
-        rows,
-        position: SharedPoints::new(position),
-        inv_mass: Shared::new(inv_mass),
-        normal: contacts
-            .any
-            .then(|| SharedPoints::new(&mut contacts.normal)),
-        pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
     }
 }
 
@@ -314,6 +278,7 @@ pub(crate) fn integrate(
                 inv_mass: Shared::new(inv_mass),
                 normal: None,
                 pressed: None,
+                give: Give::default(),
             },
             previous: SharedPoints::new(previous_position),
             lost: SharedPoints::new(lost_displacement),

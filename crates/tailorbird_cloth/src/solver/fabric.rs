@@ -22,6 +22,7 @@ impl Pass<'_> {
             position,
             inv_mass,
             contacts,
+            effort,
             ..
         } = particles;
         let mesh = Mesh {
@@ -32,6 +33,7 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
+            give: self.give(*effort, contacts.any),
         };
         let passes = &fabric.chains().passes;
         for k in 0..passes.len() {

@@ -72,7 +72,7 @@ fn a_hop_of_two_metres_stretches_nothing_and_is_told() {
                 let (a, b) = (hops.steps.last().unwrap(), runs.steps.last().unwrap());
                 for (a, b) in a.iter().zip(b) {
                     let way = *a - *b - Vec3::new(2.0, 0.0, 2.0);
-                    assert!(way.length() < 0.03, "{name}: {way}");
+                    assert!(way.length() < 0.04, "{name}: {way}");
                 }
             }
         }

@@ -4,7 +4,10 @@
 //! (normal and depth), without friction; the lines then move them along the surface alone. After it, what is left is
 //! pushed out, and friction acts with the depth of both times, as it is the whole push that presses the two together.
 
-use std::ops::Range;
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
@@ -61,6 +64,8 @@ pub(crate) struct Contacts {
     pub pressed: Numbers,
     /// Whether there are any.
     pub any: bool,
+    /// Whether any was inside a collider that it did not enter by its own motion, in this step.
+    pub overlaps: bool,
     /// What is known of the colliders around.
     pub around: Around,
 }
@@ -117,17 +122,29 @@ pub(crate) struct Touching<'a> {
     /// Normals and depths; none where they are not noted.
     pub contacts: Option<(SharedPoints<'a>, Shared<'a>)>,
     pub phase: Phase,
+    /// What is done about what is inside.
+    pub out: Out<'a>,
+}
+
+/// What is done about what is inside.
+#[derive(Clone, Copy)]
+pub(crate) struct Out<'a> {
+    /// How far what was inside already is pushed out \[m\].
+    pub most: f32,
+    /// Becomes true where that counts.
+    pub overlaps: &'a AtomicBool,
 }
 
 /// What is known of the contacts of particles side by side.
 #[derive(Clone, Copy)]
-pub(crate) struct Known<S: Simd> {
+pub(crate) struct Known<'a, S: Simd> {
     normal: V3<S>,
     depth: S::f32s,
     phase: Phase,
+    out: Out<'a>,
 }
 
-impl Touching<'_> {
+impl<'a> Touching<'a> {
     /// Makes sure that there is one of each for all particles, and that a range lies within.
     ///
     /// # Panics
@@ -146,17 +163,19 @@ impl Touching<'_> {
     }
 
     #[inline(always)]
-    pub fn known<S: Simd>(self, simd: S, window: Window) -> Known<S> {
+    pub fn known<S: Simd>(self, simd: S, window: Window) -> Known<'a, S> {
         match (self.contacts, self.phase) {
             (Some((normal, depth)), Phase::Final) => Known {
                 normal: normal.load_at(simd, window, 0),
                 depth: depth.load_at(simd, window, 0),
                 phase: self.phase,
+                out: self.out,
             },
             _ => Known {
                 normal: V3::splat(simd, Vec3::ZERO),
                 depth: S::f32s::splat(simd, 0.0),
                 phase: self.phase,
+                out: self.out,
             },
         }
     }
@@ -187,7 +206,7 @@ impl Touching<'_> {
     }
 }
 
-impl<S: Simd> Known<S> {
+impl<S: Simd> Known<'_, S> {
     /// Which particles (relative to the centre of a sphere) were in contact with it, and are no further above it than they
     /// were below.
     #[inline(always)]
@@ -210,6 +229,30 @@ impl<S: Simd> Known<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let same = normal.dot(self.normal).simd_gt(S::f32s::splat(simd, 0.9));
         self.depth.simd_gt(zero) & same & height.simd_lt(self.depth)
+    }
+
+    /// How far particles are pushed out that are this deep inside at the end of their paths: all the way, but for those that were inside
+    /// at their start, deeper than this is far, which come out by as much as they went in and no more than is allowed beside that.
+    #[inline(always)]
+    pub fn pushed(
+        self,
+        simd: S,
+        [from, to]: [V3<S>; 2],
+        (normal, depth): (V3<S>, S::f32s),
+        touching: S::mask32s,
+        depth_at_start: impl FnOnce() -> S::f32s,
+    ) -> S::f32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let most = normal.dot(from - to).max(zero) + self.out.most;
+        let deep = touching & depth.simd_gt(most);
+        if !deep.any_true() {
+            return depth;
+        }
+        let inside = deep & depth_at_start().simd_gt(S::f32s::splat(simd, self.out.most));
+        if inside.any_true() {
+            self.out.overlaps.store(true, Ordering::Relaxed);
+        }
+        inside.select(most, depth)
     }
 
     /// What [`Path::resolve`] does to one, side by side; friction in the final phase alone, with the depth that was noted

@@ -64,6 +64,9 @@ fn collide_all_with<S: Simd>(
                 any = true;
                 let start = particles.previous.load_at(simd, window, 0) - from;
                 let depth = (margin - height).max(zero);
+                let depth = contacts.pushed(simd, [start, end], (normal, depth), touching, || {
+                    margin - normal.dot(start)
+                });
                 let surface = V3::splat(simd, Vec3::ZERO);
                 let path = contacts.resolve(
                     simd,

@@ -9,7 +9,9 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
-    line::{self, Edge, FREE, LineStiffness, Lines, PRESSED, TOUCHING},
+    line::{self, Edge, FREE, Give, LineStiffness, Lines, PRESSED, TOUCHING},
+    share::Scratch,
+    tile::Tile,
 };
 
 /// Particles of a sheet, in row-major order.
@@ -23,6 +25,8 @@ pub(crate) struct Sheet<'a> {
     pub normal: Option<SharedPoints<'a>>,
     /// Where what pushes particles along their normals is added up.
     pub pressed: Option<Shared<'a>>,
+    /// How far the fabric gives way.
+    pub give: Give,
 }
 
 impl Sheet<'_> {
@@ -81,7 +85,7 @@ pub(crate) fn solve_columns(
     columns: Range<usize>,
 ) {
     sheet.check();
-    with_scratch(sheet.rows * WIDEST * 10, |scratch| {
+    with_scratch(sheet.rows * WIDEST * 19, |scratch| {
         if sheet.pressed.is_some() {
             for_bodies!(level, simd => solve_columns_with::<_, true>(simd, sheet, stiffness, columns, scratch));
         } else {
@@ -109,6 +113,8 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
         normal: sheet.normal.unwrap_or(sheet.position),
         pressed: sheet.pressed.unwrap_or(sheet.inv_mass),
         bent: block.position,
+        shared: block.shared,
+        give: sheet.give,
         offset: columns.start,
         stride: sheet.columns,
         len: m,
@@ -139,7 +145,13 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
         }
     }
     let stiffness = of_lines(lines.offset);
-    solve_block::<S, BODIES>(simd, block.lines(m, n), stiffness, contact, factors);
+    solve_block::<S, BODIES>(
+        simd,
+        block.lines(m, n, sheet.give),
+        stiffness,
+        contact,
+        factors,
+    );
     for k in 0..m {
         let p: V3<S> = block.position.load(simd, k * n);
         let to = lines.offset + k * sheet.columns;
@@ -154,7 +166,7 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
 /// Solves each row of a range.
 pub(crate) fn solve_rows(level: Level, sheet: Sheet, stiffness: LineStiffness, rows: Range<usize>) {
     sheet.check();
-    with_scratch(sheet.columns * WIDEST * 10, |scratch| {
+    with_scratch(sheet.columns * WIDEST * 19, |scratch| {
         if sheet.pressed.is_some() {
             for_bodies!(level, simd => solve_rows_with::<_, true>(simd, sheet, stiffness, rows, scratch));
         } else {
@@ -196,7 +208,13 @@ fn solve_rows_with<S: Simd, const BODIES: bool>(
             tile.load(simd, pressed, block.pressed);
         }
         let stiffness = stiffness.of_lines(simd, row, sheet.rows);
-        solve_block::<S, BODIES>(simd, block.lines(m, n), stiffness, contact, factors);
+        solve_block::<S, BODIES>(
+            simd,
+            block.lines(m, n, sheet.give),
+            stiffness,
+            contact,
+            factors,
+        );
         tile.store(simd, block.position.x, sheet.position.x);
         tile.store(simd, block.position.y, sheet.position.y);
         tile.store(simd, block.position.z, sheet.position.z);
@@ -235,12 +253,13 @@ pub(super) struct Block<'a> {
     pub inv_mass: Shared<'a>,
     pub normal: SharedPoints<'a>,
     pub pressed: Shared<'a>,
+    pub shared: Scratch<'a>,
 }
 
 impl<'a> Block<'a> {
     #[inline(always)]
     pub fn new(scratch: &'a mut [f32], len: usize, width: usize) -> Self {
-        let (mut parts, _) = scratch.split_at_mut(8 * len * width);
+        let (mut parts, _) = scratch.split_at_mut(17 * len * width);
         let mut next = || {
             let (part, rest) = std::mem::take(&mut parts).split_at_mut(len * width);
             parts = rest;
@@ -251,131 +270,34 @@ impl<'a> Block<'a> {
             y: next(),
             z: next(),
         };
-        let (position, normal) = (points(), points());
+        let [position, normal] = [points(), points()];
+        let shared = Scratch {
+            place: points(),
+            diagonal: points(),
+            beside: points(),
+        };
         Self {
             position,
             normal,
             inv_mass: next(),
             pressed: next(),
+            shared,
         }
     }
 
     #[inline(always)]
-    pub fn lines(&self, len: usize, width: usize) -> Lines<'a> {
+    pub fn lines(&self, len: usize, width: usize, give: Give) -> Lines<'a> {
         Lines {
             position: self.position,
             inv_mass: self.inv_mass,
             normal: self.normal,
             pressed: self.pressed,
             bent: self.position,
+            shared: self.shared,
+            give,
             offset: 0,
             stride: width,
             len,
         }
     }
-}
-
-/// Up to as many rows as a vector has lanes, and where they lie as columns of a block.
-#[derive(Clone, Copy)]
-struct Tile {
-    sheet_offset: usize,
-    rows: usize,
-    columns: usize,
-}
-
-impl Tile {
-    /// Transposes rows of the sheet to columns of the block. Lanes without a row get 0.
-    #[inline(always)]
-    fn load<S: Simd>(self, simd: S, sheet: Shared, block: Shared) {
-        let n = S::f32s::LEN;
-        let mut column = 0;
-        if self.rows == n {
-            while column + n <= self.columns {
-                let from = [self.sheet_offset + column, self.columns];
-                transpose(simd, sheet, from, block, [column * n, n]);
-                column += n;
-            }
-        }
-        for c in column..self.columns {
-            for r in 0..n {
-                let value = if r < self.rows {
-                    sheet.get(self.sheet_offset + r * self.columns + c)
-                } else {
-                    0.0
-                };
-                block.set(c * n + r, value);
-            }
-        }
-    }
-
-    /// Transposes columns of the block back to rows of the sheet.
-    #[inline(always)]
-    fn store<S: Simd>(self, simd: S, block: Shared, sheet: Shared) {
-        let n = S::f32s::LEN;
-        let mut column = 0;
-        if self.rows == n {
-            while column + n <= self.columns {
-                let to = [self.sheet_offset + column, self.columns];
-                transpose(simd, block, [column * n, n], sheet, to);
-                column += n;
-            }
-        }
-        for c in column..self.columns {
-            for r in 0..self.rows {
-                let value = block.get(c * n + r);
-                sheet.set(self.sheet_offset + r * self.columns + c, value);
-            }
-        }
-    }
-}
-
-/// Transposes a square of as many lines as a vector has lanes. The places are those of the first line, and how far it is to the
-/// next.
-#[inline(always)]
-fn transpose<S: Simd>(
-    simd: S,
-    from: Shared,
-    [at, stride]: [usize; 2],
-    to: Shared,
-    [to_at, to_stride]: [usize; 2],
-) {
-    let n = S::f32s::LEN;
-    if n == WIDEST {
-        let mut tile = [S::f32s::splat(simd, 0.0); WIDEST];
-        for (k, vector) in tile.iter_mut().enumerate() {
-            *vector = from.load(simd, at + k * stride);
-        }
-        for (k, vector) in interleaved(tile).into_iter().enumerate() {
-            to.store::<S>(to_at + k * to_stride, vector);
-        }
-        return;
-    }
-    // By fours: AVX2 has no cheap way to interleave more.
-    for k in (0..n).step_by(4) {
-        for l in (0..n).step_by(4) {
-            let line = |i| from.load_four(simd, at + (k + i) * stride + l);
-            let tile = interleaved([line(0), line(1), line(2), line(3)]);
-            for (i, vector) in tile.into_iter().enumerate() {
-                to.store_four(to_at + (l + i) * to_stride + k, vector);
-            }
-        }
-    }
-}
-
-/// Transposes a square of as many vectors as they have lanes: in each round, vector i and the one half a square further are
-/// interleaved.
-#[inline(always)]
-fn interleaved<S: Simd, V: SimdBase<S>, const N: usize>(mut tile: [V; N]) -> [V; N] {
-    let mut rounds = N;
-    while rounds > 1 {
-        let mut next = tile;
-        for i in 0..N / 2 {
-            let (low, high) = tile[i].interleave(tile[i + N / 2]);
-            next[2 * i] = low;
-            next[2 * i + 1] = high;
-        }
-        tile = next;
-        rounds /= 2;
-    }
-    tile
 }

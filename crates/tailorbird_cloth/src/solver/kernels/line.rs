@@ -29,10 +29,15 @@
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
-use super::lanes::{Factor, Shared, SharedPoints, V3, WIDEST};
+pub use super::edges::LineStiffness;
+pub(crate) use super::edges::{Edge, Edges, MeshLines};
+use super::{
+    lanes::{Factor, Shared, SharedPoints, V3},
+    share::{Scratch, share},
+};
 
 /// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
-const NO_MASS: f32 = 1e-30;
+pub(super) const NO_MASS: f32 = 1e-30;
 
 /// The least diagonal, as a part of (w_k + w_{k+1}) L²: two particles in contact one above the other cannot be moved along
 /// their edge.
@@ -41,7 +46,10 @@ const LEAST_PIVOT: f32 = 0.05;
 /// The least α̃_k L_k², as a part of (w_k + w_{k+1}) L²: the tension of what is taut and straight, such as a row between two
 /// pins, would have no bounds else, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet
 /// that hangs stretches half as much again.
-const LEAST_COMPLIANCE: f32 = 5e-4;
+pub(crate) const LEAST_COMPLIANCE: f32 = 5e-4;
+
+/// The largest κ = 4 w |μ| of a line whose inverse masses are w: what is above 4/3 lets waves of two edges' length grow.
+pub(crate) const LARGEST_KAPPA: f32 = 1.3;
 
 /// No particle is in contact.
 pub(crate) const FREE: u8 = 0;
@@ -49,6 +57,27 @@ pub(crate) const FREE: u8 = 0;
 pub(crate) const TOUCHING: u8 = 1;
 /// Some do, and carry parts of bodies: what pushes them is added up.
 pub(crate) const PRESSED: u8 = 2;
+
+/// How far chains give way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Give {
+    /// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
+    pub compliance: f32,
+    /// The most that an edge pulls with, κ = 4 w |μ| [-].
+    pub pull: f32,
+    /// And the most that it pushes with.
+    pub push: f32,
+}
+
+impl Default for Give {
+    fn default() -> Self {
+        Self {
+            compliance: LEAST_COMPLIANCE,
+            pull: f32::MAX,
+            push: f32::MAX,
+        }
+    }
+}
 
 /// Where the chains lie.
 #[derive(Clone, Copy)]
@@ -62,6 +91,10 @@ pub(crate) struct Lines<'a> {
     /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
     /// lies like this as well.
     pub bent: SharedPoints<'a>,
+    /// For what a substep does not stand.
+    pub shared: Scratch<'a>,
+    /// How far the chains give way.
+    pub give: Give,
     /// First particle of the first lane.
     pub offset: usize,
     /// From one particle of a chain to the next.
@@ -73,106 +106,23 @@ pub(crate) struct Lines<'a> {
 impl Lines<'_> {
     /// Where particle `k` of the first chain lies.
     #[inline(always)]
-    fn at(self, k: usize) -> usize {
+    pub(super) fn at(self, k: usize) -> usize {
         self.offset + k * self.stride
     }
 
     #[inline(always)]
-    fn particle<S: Simd>(self, simd: S, k: usize) -> V3<S> {
+    pub(super) fn particle<S: Simd>(self, simd: S, k: usize) -> V3<S> {
         self.position.load(simd, self.at(k))
     }
 
     #[inline(always)]
-    fn weight<S: Simd>(self, simd: S, k: usize) -> S::f32s {
+    pub(super) fn weight<S: Simd>(self, simd: S, k: usize) -> S::f32s {
         self.inv_mass.load(simd, self.at(k))
     }
 
     #[inline(always)]
-    fn normal<S: Simd>(self, simd: S, k: usize) -> V3<S> {
+    pub(super) fn normal<S: Simd>(self, simd: S, k: usize) -> V3<S> {
         self.normal.load(simd, self.at(k))
-    }
-}
-
-/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStiffness {
-    /// L \[m\].
-    pub rest_length: f32,
-    /// α̃ = α/h² [1/kg].
-    pub stretch: f32,
-    /// α̃ of the triples [1/kg]; infinite is without bending.
-    pub bend: f32,
-}
-
-impl LineStiffness {
-    /// The edges and the α̃ of the triples of the lines from `first` on, one in each lane, of `count` in all.
-    #[inline(always)]
-    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, S::f32s) {
-        let mut scale = [1.0; WIDEST];
-        if first == 0 {
-            scale[0] = 2.0;
-        }
-        // A sheet has two lines at least.
-        if let Some(last) = scale[..S::f32s::LEN].get_mut(count - 1 - first) {
-            *last = 2.0;
-        }
-        let scale = S::f32s::from_slice(simd, &scale[..S::f32s::LEN]);
-        let l2 = self.rest_length * self.rest_length;
-        let edge = Edge {
-            l2: S::f32s::splat(simd, l2),
-            alpha: scale * (self.stretch * l2),
-        };
-        (edge, scale * self.bend)
-    }
-}
-
-/// What an edge resists with, for each lane.
-#[derive(Clone, Copy)]
-pub(crate) struct Edge<S: Simd> {
-    /// L² \[m²\].
-    pub l2: S::f32s,
-    /// α̃ L² \[m²/kg\].
-    pub alpha: S::f32s,
-}
-
-/// What the edges of chains resist with.
-pub(crate) trait Edges<S: Simd>: Copy {
-    /// Those from the particles `k` to the next.
-    fn at(self, simd: S, k: usize) -> Edge<S>;
-}
-
-/// Edges that are all the same along a chain.
-impl<S: Simd> Edges<S> for Edge<S> {
-    #[inline(always)]
-    fn at(self, _simd: S, _k: usize) -> Self {
-        self
-    }
-}
-
-/// Edges that differ: those of a mesh.
-#[derive(Clone, Copy)]
-pub(crate) struct MeshLines<'a> {
-    /// L \[m\], 0 where there is no edge.
-    pub rest_length: &'a [f32],
-    /// By what `stretch` is multiplied [-].
-    pub scale: &'a [f32],
-    /// α̃ of an edge whose scale is 1 [1/kg].
-    pub stretch: f32,
-    /// From one edge of a chain to the next.
-    pub stride: usize,
-}
-
-impl<S: Simd> Edges<S> for MeshLines<'_> {
-    #[inline(always)]
-    fn at(self, simd: S, k: usize) -> Edge<S> {
-        let load =
-            |values: &[f32]| S::f32s::from_slice(simd, &values[k * self.stride..][..S::f32s::LEN]);
-        let length = load(self.rest_length);
-        let l2 = length * length;
-        Edge {
-            l2,
-            alpha: load(self.scale) * self.stretch * l2,
-        }
     }
 }
 
@@ -223,7 +173,9 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     for e in inner..lines.len - 1 {
         sweep.advance::<BEND, CONTACT, false>(e);
     }
-    substitute::<S, CONTACT>(simd, lines, factors);
+    if substitute::<S, E, CONTACT>(simd, lines, edges, factors) && CONTACT != PRESSED {
+        share::<S, CONTACT>(simd, lines, factors);
+    }
 }
 
 impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
@@ -294,7 +246,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         let d = s.b - s.a;
         let q = d.dot(d);
         let w = s.w_a + s.w_b;
-        let stretch = alpha.max(w * (l2 * LEAST_COMPLIANCE));
+        let stretch = alpha.max(w * (l2 * lines.give.compliance));
         let mut diagonal = w * q.max(quarter) + (stretch + least_w);
         let mut dd = s.d.dot(d);
         if CONTACT != FREE {
@@ -322,21 +274,66 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 }
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
+///
+/// Of μ no more than κ/(4 w), w being the larger inverse mass of the two ends, acts along the edge as it lies. Since |u_a − u_b|² ≤
+/// 2 w (u_a²/w_a + u_b²/w_b) and a particle has two edges of its line, no wave across the line is then pulled back by more than κ of
+/// itself, whatever the masses. Returns whether there is tension beyond that, which [`share`] wants in place of the multipliers.
 #[inline(always)]
-fn substitute<S: Simd, const CONTACT: u8>(simd: S, lines: Lines, factors: Shared) {
+fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8>(
+    simd: S,
+    lines: Lines,
+    edges: E,
+    factors: Shared,
+) -> bool {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
+    // Bodies that a cloth carries have substeps enough for their weight.
+    let borne = if CONTACT == PRESSED {
+        f32::MAX
+    } else {
+        0.25 * LARGEST_KAPPA
+    };
+    let kappa = S::f32s::splat(simd, borne);
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
+    let mut w_far = lines.weight(simd, m - 1);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
+    // Of the edge before, as most have the same: the larger inverse mass, and what it allows.
+    let (mut largest, mut most) = (zero, zero);
+    let mut any = false;
+    // The most, as a multiple of what acts along the edge as it lies.
+    let cap = S::f32s::splat(simd, lines.give.pull / LARGEST_KAPPA);
+    let pushes = S::f32s::splat(simd, lines.give.push / LARGEST_KAPPA);
     for e in (0..m - 1).rev() {
         let near = lines.bent.load(simd, e * lanes);
-        let mu = factors.load(simd, (2 * e + 1) * lanes) + factor * mu_far;
-        factor = factors.load(simd, 2 * e * lanes);
-        let push = Factor(mu) * (far - near);
-        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), far, push - pull);
-        (far, pull, mu_far) = (near, push, mu);
+        let w_near = lines.weight(simd, e);
+        let w = w_near.max(w_far);
+        if e + 2 == m || !w.simd_eq(largest).all_true() {
+            (largest, most) = (w, kappa / w);
+        }
+        let slot = 2 * e * lanes;
+        let mu = factors.load(simd, slot + lanes) + factor * mu_far;
+        factor = factors.load(simd, slot);
+        let d = far - near;
+        let mut beyond = zero;
+        let mut mu = mu;
+        if (zero - mu).simd_gt(most).any_true() {
+            any = true;
+            mu = mu.max(zero - most * cap);
+            let Edge { l2, .. } = edges.at(simd, e);
+            // It will act on what is as long as at rest.
+            let half = S::f32s::splat(simd, 0.5);
+            let longer = half + half * d.dot(d) / l2.max(S::f32s::splat(simd, NO_MASS));
+            beyond = (zero - mu - most).max(zero) * longer.min(half * 4.0);
+        }
+        factors.store::<S>(slot + lanes, beyond);
+        mu_far = mu;
+        let mu = mu.min(most * pushes).max(zero - most);
+        let push = Factor(mu) * d;
+        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), (far, w_far), push - pull);
+        (far, w_far, pull) = (near, w_near, push);
     }
-    apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
+    apply::<S, CONTACT>(simd, lines, lines.at(0), (far, w_far), nothing - pull);
+    any
 }
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.
@@ -345,7 +342,7 @@ fn apply<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     i: usize,
-    position: V3<S>,
+    (position, w): (V3<S>, S::f32s),
     mut push: V3<S>,
 ) {
     if CONTACT != FREE {
@@ -357,7 +354,6 @@ fn apply<S: Simd, const CONTACT: u8>(
             pressed.store::<S>(i, pressed.load(simd, i) + along);
         }
     }
-    let w = lines.inv_mass.load(simd, i);
     lines.position.store(i, position + Factor(w) * push);
 }
 

@@ -12,7 +12,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::{Block, for_bodies},
-    line::{self, FREE, MeshLines, PRESSED, TOUCHING},
+    line::{self, FREE, Give, MeshLines, PRESSED, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
 };
@@ -38,6 +38,8 @@ pub(crate) struct Mesh<'a> {
     pub normal: Option<SharedPoints<'a>>,
     /// Where what pushes particles along their normals is added up.
     pub pressed: Option<Shared<'a>>,
+    /// How far the fabric gives way.
+    pub give: Give,
 }
 
 impl Mesh<'_> {
@@ -125,7 +127,7 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     mesh.check();
     let batches = &mesh.fabric.chains().batches[batches];
     let longest = batches.iter().map(|batch| batch.length).max().unwrap_or(0);
-    with_scratch(longest * WIDEST * 10, |scratch| {
+    with_scratch(longest * WIDEST * 19, |scratch| {
         for batch in batches {
             if mesh.pressed.is_some() {
                 for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
@@ -176,7 +178,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             stretch,
             stride: LANES,
         };
-        let (lines, zero) = (block.lines(m, n), S::f32s::splat(simd, 0.0));
+        let (lines, zero) = (block.lines(m, n, mesh.give), S::f32s::splat(simd, 0.0));
         if BODIES {
             line::solve::<S, _, false, PRESSED>(simd, lines, edges, zero, factors);
         } else if mesh.normal.is_some() {

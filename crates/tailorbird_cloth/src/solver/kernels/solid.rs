@@ -229,6 +229,9 @@ fn collide_all_with<S: Simd, Q: Solid>(
             }
             any = true;
             let depth = (zero - near.distance).max(zero);
+            let depth = contacts.pushed(simd, [start, end], (normal, depth), touching, || {
+                zero - solid.near(simd, window, local[0]).distance
+            });
             let still = V3::splat(simd, Vec3::ZERO);
             let path = contacts.resolve(
                 simd,

@@ -14,7 +14,7 @@ use crate::{
     solver::kernels::{
         ball::Ball,
         capsule::Capsule,
-        contact::Phase,
+        contact::{Out, Phase},
         cuboid::Cuboid,
         cylinder::Cylinder,
         lanes::{Shared, SharedPoints, levels},
@@ -141,6 +141,10 @@ fn bits<Q: Solid>(level: Level, solid: &Q, cuts: &[usize]) -> Vec<u32> {
             inv_mass: Shared::new(&mut inv_mass),
             contacts: Some((SharedPoints::new(&mut normal), Shared::new(&mut depth))),
             phase,
+            out: Out {
+                most: f32::INFINITY,
+                overlaps: &std::sync::atomic::AtomicBool::new(false),
+            },
         };
         let mut start = 0;
         for end in cuts.iter().copied().chain([len]) {
@@ -200,6 +204,10 @@ fn a_turning_box_takes_along_what_lies_on_it() {
         inv_mass: Shared::new(&mut inv_mass),
         contacts: None,
         phase: Phase::Final,
+        out: Out {
+            most: f32::INFINITY,
+            overlaps: &std::sync::atomic::AtomicBool::new(false),
+        },
     };
     let solid = Cuboid {
         half_size: Vec3::splat(0.5),

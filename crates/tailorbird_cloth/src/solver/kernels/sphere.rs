@@ -141,6 +141,9 @@ fn collide_all_with<S: Simd>(
                     end = end + Factor(long.select(cut, zero)) * sliding;
                 }
                 let depth = (radius - normal.dot(end)).max(zero);
+                let depth = contacts.pushed(simd, [start, end], (normal, depth), touching, || {
+                    radius - start2.sqrt()
+                });
                 let mut surface = V3::splat(simd, Vec3::ZERO);
                 if turns {
                     surface = Factor(radius) * rotation.cross(normal);

@@ -17,21 +17,41 @@ use super::{
 /// The least q/L² of an edge whose ends keep a motion of their own.
 pub(crate) const LEAST: f32 = 0.5;
 
-/// Whether any edge along rows and columns is squeezed; also where there are fewer columns than lanes.
-pub(crate) fn any(level: Level, sheet: Sheet, spacing: Vec2) -> bool {
+/// What the edges along rows and columns look like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Survey {
+    /// Whether any is squeezed; also where there are fewer columns than lanes.
+    pub squeezed: bool,
+    /// The part of them that is longer than it should be [-].
+    pub strained: f32,
+    /// How long the longest is, as a multiple of its length at rest [-].
+    pub longest: f32,
+}
+
+/// Looks at all edges; those are strained that are longer than `allowed` times their length at rest.
+pub(crate) fn survey(level: Level, sheet: Sheet, spacing: Vec2, allowed: f32) -> Survey {
     sheet.check();
-    dispatch!(level, simd => any_with(simd, sheet, spacing))
+    dispatch!(level, simd => survey_with(simd, sheet, spacing, allowed))
 }
 
 #[inline(always)]
-fn any_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2) -> bool {
+fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, allowed: f32) -> Survey {
     let columns = sheet.columns;
-    let least = spacing * spacing * LEAST;
-    let mut any = false;
+    let [least, most] = [LEAST, allowed * allowed].map(|part| spacing * spacing * part);
+    let per_square = (spacing * spacing).recip();
+    let mut squeezed = false;
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+    // Whole numbers, which add up to the same in any order.
+    let mut strained = 0;
+    let mut farthest = zero;
     for row in 0..sheet.rows {
         let first = row * columns;
         let below = if row + 1 < sheet.rows { columns } else { 0 };
-        for (count, to, least) in [(columns - 1, 1, least.x), (below, columns, least.y)] {
+        let mut of_row = zero;
+        for (count, to, least, most, per_square) in [
+            (columns - 1, 1, least.x, most.x, per_square.x),
+            (below, columns, least.y, most.y, per_square.y),
+        ] {
             each_window(
                 simd,
                 0..count,
@@ -39,13 +59,24 @@ fn any_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2) -> bool {
                 |window| {
                     let from: V3<S> = sheet.position.load_at(simd, window, first);
                     let d = sheet.position.load_at(simd, window, first + to) - from;
-                    let squeezed = d.dot(d).simd_lt(S::f32s::splat(simd, least));
-                    any |= squeezed.any_true();
+                    let q = d.dot(d);
+                    squeezed |= q.simd_lt(S::f32s::splat(simd, least)).any_true();
+                    farthest = farthest.max(q * per_square);
+                    let long = q.simd_gt(S::f32s::splat(simd, most));
+                    of_row += (long & window.todo(simd)).select(one, zero);
                 },
             );
         }
+        strained += of_row.as_slice().iter().map(|n| *n as usize).sum::<usize>();
     }
-    any
+    let edges = sheet.rows * (columns - 1) + (sheet.rows - 1) * columns;
+    Survey {
+        squeezed,
+        strained: strained as f32 / edges as f32,
+        longest: (farthest.as_slice().iter().copied())
+            .fold(0.0, f32::max)
+            .sqrt(),
+    }
 }
 
 /// Gives free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns the motion of the whole, by
@@ -132,7 +163,10 @@ mod tests {
     use super::*;
     use crate::{
         points::Points,
-        solver::kernels::lanes::{Shared, levels},
+        solver::kernels::{
+            lanes::{Shared, levels},
+            line::Give,
+        },
     };
 
     #[test]
@@ -156,6 +190,7 @@ mod tests {
                         inv_mass: Shared::new(&mut inv_mass),
                         normal: None,
                         pressed: None,
+                        give: Give::default(),
                     };
                     let whole = RigidMotion {
                         displacement: Vec3::Y,

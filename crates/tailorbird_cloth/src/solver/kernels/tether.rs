@@ -9,13 +9,17 @@ use bevy_math::{Vec2, Vec3};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::lanes::{Factor, Reading, V3, Window, each_window, lane_numbers};
-use super::lattice::Sheet;
+use super::{lattice::Sheet, recovery::Recovery};
 
 /// A pin, and how far each particle gets from it.
 #[derive(Clone, Copy)]
 pub(crate) struct Tether<W> {
     /// Where the pin is \[m\].
     pub anchor: Vec3,
+    /// Where it was at the start of the substep \[m\].
+    pub anchor_before: Vec3,
+    /// How much longer it is than it would be [-], as the pins are further apart than the sheet between them is long.
+    pub longer: f32,
     /// How far each particle gets from it.
     pub ways: W,
 }
@@ -45,7 +49,7 @@ pub(crate) fn solve(
     level: Level,
     sheet: Sheet,
     tethers: &[Option<Tether<Reading>>],
-    slack: f32,
+    (slack, recovery): (f32, Recovery),
     particles: Range<usize>,
 ) {
     sheet.check();
@@ -58,12 +62,12 @@ pub(crate) fn solve(
                 pull(
                     simd,
                     sheet,
-                    tethers,
+                    (tethers, recovery),
                     window,
                     0,
                     #[inline(always)]
-                    |lengths| {
-                        let length = lengths.load_at(simd, window) * slack;
+                    |lengths, longer| {
+                        let length = lengths.load_at(simd, window) * (slack * longer);
                         length * length
                     },
                 );
@@ -77,7 +81,7 @@ pub(crate) fn solve_straight(
     level: Level,
     sheet: Sheet,
     tethers: &[Option<Tether<Straight>>],
-    slack: f32,
+    (slack, recovery): (f32, Recovery),
     rows: Range<usize>,
 ) {
     sheet.check();
@@ -91,12 +95,12 @@ pub(crate) fn solve_straight(
                     pull(
                         simd,
                         sheet,
-                        tethers,
+                        (tethers, recovery),
                         window,
                         row * sheet.columns,
                         #[inline(always)]
-                        |ways| {
-                            let [dx, dy] = (ways.spacing * slack).to_array();
+                        |ways, longer| {
+                            let [dx, dy] = (ways.spacing * (slack * longer)).to_array();
                             let along = dy * (row as f32 - ways.row as f32);
                             let first = window.at as f32 - ways.column as f32;
                             let across = (lane_numbers(simd) + first) * dx;
@@ -110,14 +114,17 @@ pub(crate) fn solve_straight(
 }
 
 /// Pulls the particles of a window, from `first` on. `l2` tells the square of how far they get.
+///
+/// What is too far away already when the substep begins comes back no faster than the [`Recovery`] says, and what
+/// is in contact moves along the surface alone.
 #[inline(always)]
 fn pull<S: Simd, W: Copy>(
     simd: S,
     sheet: Sheet,
-    tethers: &[Option<Tether<W>>],
+    (tethers, recovery): (&[Option<Tether<W>>], Recovery),
     window: Window,
     first: usize,
-    l2: impl Fn(W) -> S::f32s,
+    l2: impl Fn(W, f32) -> S::f32s,
 ) {
     let zero = S::f32s::splat(simd, 0.0);
     let start: V3<S> = sheet.position.load_at(simd, window, first);
@@ -125,18 +132,28 @@ fn pull<S: Simd, W: Copy>(
     let mut taut = false;
     for tether in tethers.iter().flatten() {
         // Nothing comes of the lanes beyond a short window, which are not stored.
-        let l2 = l2(tether.ways);
+        let mut l2 = l2(tether.ways, tether.longer);
         let d = p - V3::splat(simd, tether.anchor);
         let q = d.dot(d);
         let beyond = q.simd_gt(l2);
         if beyond.any_true() {
             taut = true;
-            let excess = q - l2;
+            let before: V3<S> = recovery.start.load_at(simd, window, first);
+            let before = before - V3::splat(simd, tether.anchor_before);
+            l2 = recovery.target::<S>(before.dot(before), l2);
+            let excess = (q - l2).max(zero);
             let s = (excess + excess) / (q * 3.0 + l2);
             p = p - Factor(beyond.select(s, zero)) * d;
         }
     }
     if taut {
+        if let Some(normal) = sheet.normal {
+            let n: V3<S> = normal.load_at(simd, window, first);
+            let moved = p - start;
+            if sheet.pressed.is_none() {
+                p = p - Factor(n.dot(moved)) * n;
+            }
+        }
         let w = sheet.inv_mass.load_at(simd, window, first);
         let free = w.simd_gt(zero);
         sheet

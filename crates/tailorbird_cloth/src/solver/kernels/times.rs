@@ -7,13 +7,14 @@ use fearless_simd::Level;
 
 use super::{
     breeze::{self, Breeze},
-    contact::{Phase, Touching},
+    contact::{Out, Phase, Touching},
     distance,
     half_space::{self, MovingHalfSpace},
     lanes::{Shared, SharedPoints},
     lattice::{self, Sheet},
-    line::LineStiffness,
+    line::{Give, LineStiffness},
     normals,
+    recovery::Recovery,
     rigid_motion::RigidMotion,
     shear::{self, Shear},
     sphere::{self, MovingSphere},
@@ -130,6 +131,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         inv_mass: Shared::new(&mut inv_mass),
         normal: None,
         pressed: None,
+        give: Give::default(),
     };
     let line = LineStiffness {
         rest_length: SPACING,
@@ -158,11 +160,21 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
             row: 0,
             spacing: Vec2::splat(SPACING),
         };
-        Some(Tether { anchor, ways })
+        Some(Tether {
+            anchor,
+            anchor_before: anchor,
+            longer: 1.0,
+            ways,
+        })
     };
     let tethers = [tether(Vec3::ZERO, 0), tether(corner, side - 1)];
+    let recovery = Recovery {
+        start: sheet.position,
+        least: 0.001,
+        part: 0.01,
+    };
     times.add("tethers", 2 * n * n, || {
-        tether::solve_straight(level, sheet, &tethers, 1.001, 0..n);
+        tether::solve_straight(level, sheet, &tethers, (1.001, recovery), 0..n);
     });
 }
 
@@ -198,6 +210,10 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
         inv_mass: Shared::new(&mut inv_mass),
         contacts: None,
         phase: Phase::Final,
+        out: Out {
+            most: f32::INFINITY,
+            overlaps: &std::sync::atomic::AtomicBool::new(false),
+        },
     };
     let motion = Motion {
         sheet: Sheet {
@@ -207,6 +223,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             inv_mass: particles.inv_mass,
             normal: None,
             pressed: None,
+            give: Give::default(),
         },
         previous: particles.previous,
         lost: SharedPoints::new(&mut lost),

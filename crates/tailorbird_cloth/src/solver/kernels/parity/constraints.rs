@@ -89,7 +89,7 @@ fn diagonals() {
             };
             same(&State::sheet(size), |level, state, cuts| {
                 let rows = blocks(state.rows, cuts);
-                state.with_sheet(false, |sheet| {
+                state.with_sheet(rising_first, |sheet| {
                     // The last block first: they do not depend on each other.
                     for block in rows.iter().rev() {
                         shear::solve(level, sheet, shear, block.clone());
@@ -120,12 +120,14 @@ fn tethers() {
                 let anchor = state.position.get(pin);
                 Some(Tether {
                     anchor,
+                    anchor_before: anchor + 0.01,
+                    longer: 1.01,
                     ways: ways(pin),
                 })
             });
-            state.with_sheet(false, |sheet| {
+            state.with_sheet_and_start(true, |sheet, recovery| {
                 for block in rows {
-                    tether::solve_straight(level, sheet, &tethers, 1.001, block);
+                    tether::solve_straight(level, sheet, &tethers, (1.001, recovery), block);
                 }
             });
         });
@@ -139,13 +141,15 @@ fn tethers() {
                 let anchor = state.position.get(pins[k]);
                 Some(Tether {
                     anchor,
+                    anchor_before: anchor + 0.01,
+                    longer: 1.01,
                     ways: Reading(&lengths[k]),
                 })
             });
             let particles = blocks(n, cuts);
-            state.with_sheet(false, |sheet| {
+            state.with_sheet_and_start(false, |sheet, recovery| {
                 for block in particles {
-                    tether::solve(level, sheet, &tethers, 1.001, block);
+                    tether::solve(level, sheet, &tethers, (1.001, recovery), block);
                 }
             });
         });
@@ -168,6 +172,7 @@ fn chains_of_a_mesh() {
                 inv_mass: Shared::new(&mut state.inv_mass),
                 normal: contact.then(|| SharedPoints::new(&mut state.normal)),
                 pressed: bodies.then(|| Shared::new(&mut state.pressed)),
+                give: super::give(contact),
             };
             for pass in &fabric.chains().passes {
                 mesh::solve_chains(level, mesh, 0.01, pass.batches.clone());

@@ -9,6 +9,8 @@ use fearless_simd::Level;
 use super::{
     lanes::{Shared, SharedPoints, levels},
     lattice::Sheet,
+    line::Give,
+    recovery::Recovery,
 };
 use crate::{numbers::Numbers, points::Points, topology::test_meshes::random};
 
@@ -97,14 +99,25 @@ impl State {
     }
 
     fn with_sheet(&mut self, contact: bool, f: impl FnOnce(Sheet)) {
-        f(Sheet {
+        self.with_sheet_and_start(contact, |sheet, _| f(sheet));
+    }
+
+    fn with_sheet_and_start(&mut self, contact: bool, f: impl FnOnce(Sheet, Recovery)) {
+        let recovery = Recovery {
+            start: SharedPoints::new(&mut self.previous),
+            least: 0.01,
+            part: 0.05,
+        };
+        let sheet = Sheet {
             columns: self.columns,
             rows: self.rows,
             position: SharedPoints::new(&mut self.position),
             inv_mass: Shared::new(&mut self.inv_mass),
             normal: contact.then(|| SharedPoints::new(&mut self.normal)),
             pressed: (contact && self.bodies).then(|| Shared::new(&mut self.pressed)),
-        });
+            give: give(contact),
+        };
+        f(sheet, recovery);
     }
 
     /// The bits of all numbers.
@@ -113,6 +126,19 @@ impl State {
         let numbers = points.into_iter().flat_map(|p| [&p.x, &p.y, &p.z]);
         let all = numbers.chain([&self.depth, &self.pressed]).flatten();
         all.map(|v| v.to_bits()).collect()
+    }
+}
+
+/// Of what is strained, and of what is not.
+fn give(strained: bool) -> Give {
+    if strained {
+        Give {
+            compliance: 0.02,
+            pull: 1.3,
+            push: 1.3,
+        }
+    } else {
+        Give::default()
     }
 }
 

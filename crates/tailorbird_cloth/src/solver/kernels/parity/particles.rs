@@ -5,11 +5,12 @@ use fearless_simd::Level;
 
 use super::{
     super::{
-        contact::{Phase, Touching},
+        contact::{Out, Phase, Touching},
         half_space::{self, MovingHalfSpace},
         lanes::{Shared, SharedPoints, levels},
         lattice::Sheet,
         limit::{self, Backstop, Limits},
+        line::Give,
         range,
         rigid_motion::RigidMotion,
         sphere::{self, MovingSphere},
@@ -66,6 +67,7 @@ fn viscosity() {
                         inv_mass: Shared::new(&mut state.inv_mass),
                         normal: None,
                         pressed: None,
+                        give: Give::default(),
                     },
                     previous: SharedPoints::new(&mut state.previous),
                     lost: SharedPoints::new(&mut state.lost),
@@ -109,6 +111,7 @@ fn viscosity_keeps_momentum_and_is_inertia_without_it() {
                 inv_mass: Shared::new(&mut state.inv_mass),
                 normal: None,
                 pressed: None,
+                give: Give::default(),
             },
             previous: SharedPoints::new(&mut state.previous),
             lost: SharedPoints::new(&mut state.lost),
@@ -181,6 +184,10 @@ fn colliders() {
                         inv_mass: Shared::new(&mut state.inv_mass),
                         contacts,
                         phase,
+                        out: Out {
+                            most: f32::INFINITY,
+                            overlaps: &std::sync::atomic::AtomicBool::new(false),
+                        },
                     };
                     let any = if flat {
                         half_space::collide_all(level, &plane, particles, 0..n)

@@ -1,0 +1,180 @@
+//! Whether a cloth is asked for more than its fabric has, and how what is strained is slowed.
+//!
+//! Posts that stand too far apart, a body that is put into a curtain: no number of substeps makes that right. While many edges are longer
+//! than the fabric lets them be, its lines give way (`solver/give.rs`), and what moves by their pull moves slowly, as seen from what holds
+//! it, so that stretch comes back without becoming speed.
+
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+
+use crate::{particles::ClothParticles, solver::kernels::contact::Contacts, topology::Topology};
+
+/// How it stands with what a cloth is asked for, as was seen at the end of the step before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+pub(crate) struct Effort {
+    /// The part of the edges that is longer than the fabric lets them be [-].
+    pub strained: f32,
+    /// For how many steps it has been strained.
+    steps: u32,
+    /// Whether the fabric gives way, and moves slowly.
+    pub recovers: bool,
+    /// How long the longest edge is, as a multiple of how large the cloth is at rest [-].
+    pub longest: f32,
+}
+
+/// Edges that are longer than at rest by more than this, and than the material lets them be, are strained [-].
+pub(crate) const STRAIN: f32 = 0.03;
+
+/// A cloth of whose edges more than this part is strained is asked for more than the fabric has [-].
+const STRAINED: f32 = 0.05;
+
+/// And stays so until fewer are than this part [-].
+const STILL_STRAINED: f32 = 0.01;
+
+/// And one of whose edges any is longer than this many times its length [-].
+pub(crate) const TORN: f32 = 8.0;
+
+/// What is jerked, or hit, is strained for a moment, and rightly so: it has to be strained for so many steps before it gives way, where
+/// something is inside of it or it is torn, where something touches it, and where nothing does.
+const MOMENTS: [u32; 3] = [1, 6, 60];
+
+/// How fast what is strained moves by itself, as seen from what holds it, at most; twice that while constraints move it [m/s].
+const SPEED: f32 = 1.0;
+
+/// Rate at which what is farther apart than the cloth is large comes back [1/s].
+const RATE: f32 = 8.0;
+
+/// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
+const CALMED: f32 = 3.0;
+
+impl Effort {
+    /// Which part of the edges is strained and stays so [-].
+    pub fn unmet(self) -> f32 {
+        if self.recovers { self.strained } else { 0.0 }
+    }
+
+    /// Sees at the end of a step which part of the edges is strained, whether any is torn, and how long the longest is.
+    pub fn see(&mut self, strained: f32, torn: bool, longest: f32, contacts: &Contacts) {
+        (self.strained, self.longest) = (strained, longest);
+        let most = if self.recovers {
+            STILL_STRAINED
+        } else {
+            STRAINED
+        };
+        self.steps = if strained > most || torn {
+            self.steps + 1
+        } else {
+            0
+        };
+        let moment = match (contacts.overlaps || torn, contacts.any) {
+            (true, _) => MOMENTS[0],
+            (false, true) => MOMENTS[1],
+            (false, false) => MOMENTS[2],
+        };
+        self.recovers = self.steps >= moment;
+    }
+}
+
+impl ClothParticles {
+    /// How most of the particles that are held moved since the start of the substep, and how far what holds or touches the cloth moved
+    /// \[m\]. None where nothing holds it.
+    fn led(&mut self) -> Option<(Vec3, f32)> {
+        let mut scratch = std::mem::take(&mut self.lambda);
+        let led = self.led_with(&mut scratch);
+        self.lambda = scratch;
+        led
+    }
+
+    fn led_with(&self, lengths: &mut Vec<f32>) -> Option<(Vec3, f32)> {
+        let held = self.inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0);
+        let ways = held.map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
+        lengths.clear();
+        lengths.extend(ways.clone().map(Vec3::length));
+        let middle = lengths.len().checked_sub(1)? / 2;
+        let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
+        // What jumps away from the others leads nobody.
+        let most = ways.filter(|way| way.length() <= 1.5 * middle);
+        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), way| {
+            (sum + way, count + 1.0)
+        });
+        let touched = if self.contacts.any {
+            self.contacts.depth.iter().copied().fold(0.0, f32::max)
+        } else {
+            0.0
+        };
+        Some((sum / f32::max(count, 1.0), middle.max(touched)))
+    }
+
+    /// Slows what is strained between things that hold it, as seen from them, during a substep.
+    pub(crate) fn calm_strained(&mut self, seconds: f32) {
+        if !self.effort.recovers {
+            return;
+        }
+        let Some((way, reach)) = self.led() else {
+            return;
+        };
+        let part = 1.0 - (-CALMED * seconds).exp();
+        for (i, w) in self.inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let before = self.previous_position.get(i);
+                let moved = self.position.get(i) - before - way;
+                let kept = ((1.0 - part) * moved).clamp_length_max(SPEED * seconds + reach);
+                self.previous_position.set(i, before + moved - kept);
+            }
+        }
+    }
+
+    /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `size` is how large the cloth is \[m\].
+    pub(crate) fn slow_strained(&mut self, seconds: f32, size: f32) {
+        if !self.effort.recovers {
+            return;
+        }
+        let Some((way, reach)) = self.led() else {
+            return;
+        };
+        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (low, high) =
+            (self.previous_position.iter()).fold(none, |(low, high), p| (low.min(p), high.max(p)));
+        let too_far = ((high - low).max_element() - size).max(0.0);
+        let most = (2.0 * SPEED + RATE * too_far) * seconds + reach;
+        for (i, w) in self.inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let start = self.previous_position.get(i) + way;
+                let moved = self.position.get(i) - start;
+                if moved.length_squared() > most * most {
+                    self.position.set(i, start + moved.clamp_length_max(most));
+                }
+            }
+        }
+    }
+
+    /// A sheet in a perfect plane that something presses within that plane would stand as a board: pushes its particles out of it, each
+    /// by its own part of 10 µm.
+    pub(crate) fn disturb(&mut self, topology: &Topology) {
+        const FLAT: f32 = 1e-4;
+        const PUSH: f32 = 1e-5;
+        let Self {
+            position,
+            previous_position,
+            inv_mass,
+            contacts,
+            ..
+        } = self;
+        let flat = topology.flat && position.z.iter().all(|z| z.abs() < FLAT);
+        if !flat || !contacts.any {
+            return;
+        }
+        let normal = &contacts.normal;
+        let sideways = |i: usize| normal.x[i].hypot(normal.y[i]) > normal.z[i].abs();
+        if !(0..normal.len()).any(sideways) {
+            return;
+        }
+        for (i, w) in inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let push = PUSH * crate::numbers::unit_of(i as u32);
+                position.z[i] += push;
+                previous_position.z[i] += push;
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What is looked at after the last substep of a step, and calmed.
+
+use fearless_simd::Level;
+
+use super::kernels::{
+    lanes::{Shared, SharedPoints},
+    lattice::Sheet,
+    line::Give,
+    rigid_motion::RigidMotion,
+    squeeze,
+};
+use crate::{
+    effort::{self, Effort},
+    particles::ClothParticles,
+    points::Points,
+    topology::{Topology, lattice::Lattice},
+};
+
+/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
+/// its momentum.
+pub(crate) fn calm(
+    level: Level,
+    topology: &Topology,
+    allowed: f32,
+    particles: &mut ClothParticles,
+) {
+    if particles.is_empty() || particles.len() != topology.particles() {
+        return;
+    }
+    let free = !particles.inv_mass.contains(&0.0);
+    let ClothParticles {
+        position,
+        previous_position,
+        mass,
+        inv_mass,
+        effort,
+        contacts,
+        ..
+    } = particles;
+    if let Some(lattice) = &topology.lattice {
+        let sheet = bare(lattice, position, inv_mass);
+        let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
+        // What carries bodies takes more substeps for them already, and would throw them.
+        if contacts.around.couplings.is_empty() {
+            let side = lattice.columns.max(lattice.rows) as f32;
+            let torn = survey.longest > effort::TORN;
+            effort.see(survey.strained, torn, survey.longest / side, contacts);
+        } else {
+            *effort = Effort::default();
+        }
+        if !survey.squeezed {
+            return;
+        }
+        let whole = RigidMotion::of_all(mass, position, previous_position);
+        let previous = SharedPoints::new(previous_position);
+        let sheet = bare(lattice, position, inv_mass);
+        squeeze::stop(level, sheet, previous, lattice.spacing, whole);
+        if free {
+            give_back(whole, mass, position, previous_position);
+        }
+    } else if let Some(fabric) = &topology.fabric {
+        let is_squeezed = |position: &Points, [a, b]: [u32; 2], rest_length: f32| {
+            let [a, b] = [a, b].map(|i| position.get(i as usize));
+            a.distance_squared(b) < squeeze::LEAST * rest_length * rest_length
+        };
+        let (mut squeezed, mut strained, mut count) = (false, 0, 0);
+        let (mut far, mut farthest) = (0.0_f32, 0.0_f32);
+        for ([a, b], rest_length) in fabric.chains().edges() {
+            let [a, b] = [a, b].map(|i| position.get(i as usize));
+            let (q, l2) = (a.distance_squared(b), rest_length * rest_length);
+            squeezed |= q < squeeze::LEAST * l2;
+            far = far.max(q / l2);
+            farthest = farthest.max(q);
+            strained += u32::from(q > allowed * allowed * l2);
+            count += 1;
+        }
+        if contacts.around.couplings.is_empty() {
+            let part = strained as f32 / count.max(1) as f32;
+            let torn = far > effort::TORN * effort::TORN;
+            effort.see(part, torn, farthest.sqrt() / fabric.size(), contacts);
+        } else {
+            *effort = Effort::default();
+        }
+        if !squeezed {
+            return;
+        }
+        let whole = RigidMotion::of_all(mass, position, previous_position);
+        for (ends, rest_length) in fabric.chains().edges() {
+            if is_squeezed(position, ends, rest_length) {
+                for i in ends.map(|i| i as usize) {
+                    if inv_mass[i] > 0.0 {
+                        let place = position.get(i);
+                        previous_position.set(i, place - whole.at(place));
+                    }
+                }
+            }
+        }
+        if free {
+            give_back(whole, mass, position, previous_position);
+        }
+    }
+}
+
+/// A sheet without contacts.
+fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]) -> Sheet<'a> {
+    Sheet {
+        columns: lattice.columns as usize,
+        rows: lattice.rows as usize,
+        position: SharedPoints::new(position),
+        inv_mass: Shared::new(inv_mass),
+        normal: None,
+        pressed: None,
+        give: Give::default(),
+    }
+}
+
+/// Gives all particles what is missing of the motion of the whole as it was.
+fn give_back(was: RigidMotion, mass: &[f32], position: &Points, previous: &mut Points) {
+    let is = RigidMotion::of_all(mass, position, previous);
+    for i in 0..mass.len() {
+        let place = position.get(i);
+        previous.set(i, previous.get(i) - (was.at(place) - is.at(place)));
+    }
+}

@@ -1,0 +1,81 @@
+//! What a cloth gives way to that is asked for more than its fabric has; [`effort`] tells when.
+
+use super::{
+    chains::Pass,
+    kernels::{
+        lanes::SharedPoints,
+        line::{Give, LARGEST_KAPPA},
+        recovery::Recovery,
+    },
+};
+use crate::{effort::Effort, topology::fabric::Fabric};
+
+/// No cloth counts as smaller than this \[m\].
+const SMALLEST: f32 = 1e-3;
+
+/// [`Recovery::least`] of what comes back at once.
+const ALL: f32 = 1e6;
+
+/// How fast what is farther from a pin than it reaches comes back while the cloth is strained, at least [m/s].
+const TETHER_SPEED: f32 = 0.05;
+
+/// And at which rate [1/s].
+const TETHER_RATE: f32 = 0.5;
+
+/// The compliance of the lines of a strained sheet, relative to what their particles resist with [-].
+const COMPLIANCE: f32 = 0.02;
+
+/// κ of what hangs, times this, is the strain that it may cost to give way [-].
+const LOAD: f32 = 0.015;
+
+impl Pass<'_> {
+    /// How what is farther from a pin than it reaches comes back.
+    pub(super) fn recovery<'b>(&self, effort: Effort, start: SharedPoints<'b>) -> Recovery<'b> {
+        if !effort.recovers {
+            return Recovery {
+                start,
+                least: ALL,
+                part: 1.0,
+            };
+        }
+        let size = self.size().max(SMALLEST);
+        Recovery {
+            start,
+            least: 2.0 * TETHER_SPEED * self.seconds / size,
+            part: (TETHER_RATE * self.seconds).min(1.0),
+        }
+    }
+
+    /// How far chains give way.
+    pub(super) fn give(&self, effort: Effort, touches: bool) -> Give {
+        if !effort.recovers {
+            return Give::default();
+        }
+        match &self.topology.fabric {
+            None => Give {
+                compliance: COMPLIANCE,
+                pull: if touches { LARGEST_KAPPA } else { f32::MAX },
+                push: LARGEST_KAPPA,
+            },
+            Some(fabric) => Give {
+                compliance: self.compliance(fabric),
+                push: LARGEST_KAPPA,
+                ..Give::default()
+            },
+        }
+    }
+
+    /// The compliance of the chains of a mesh that is strained, relative to what its particles resist with [-].
+    ///
+    /// They end anywhere, at springs that are relaxed and bear less than a chain can pull with: with all of it single edges are torn out
+    /// where the mesh as a whole is stretched by little. Its own weight stretches it by no more than a part of what counts as strained.
+    fn compliance(&self, fabric: &Fabric) -> f32 {
+        let count = (fabric.particles() as f32).sqrt().max(1.0);
+        let size = self.size().max(SMALLEST);
+        let spacing = size / count;
+        // κ = 4 h² T/(m L) of what hangs by its upper edge.
+        let kappa = 4.0 * self.seconds * self.seconds * self.gravity.max(1.0) * size;
+        let least = LOAD * spacing * spacing / kappa;
+        least.clamp(Give::default().compliance, 1.0)
+    }
+}

@@ -1,0 +1,88 @@
+//! What the edges of lines resist with.
+
+use fearless_simd::{Simd, prelude::*};
+
+use super::lanes::WIDEST;
+
+/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStiffness {
+    /// L \[m\].
+    pub rest_length: f32,
+    /// α̃ = α/h² [1/kg].
+    pub stretch: f32,
+    /// α̃ of the triples [1/kg]; infinite is without bending.
+    pub bend: f32,
+}
+
+impl LineStiffness {
+    /// The edges and the α̃ of the triples of the lines from `first` on, one in each lane, of `count` in all.
+    #[inline(always)]
+    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, S::f32s) {
+        let mut scale = [1.0; WIDEST];
+        if first == 0 {
+            scale[0] = 2.0;
+        }
+        // A sheet has two lines at least.
+        if let Some(last) = scale[..S::f32s::LEN].get_mut(count - 1 - first) {
+            *last = 2.0;
+        }
+        let scale = S::f32s::from_slice(simd, &scale[..S::f32s::LEN]);
+        let l2 = self.rest_length * self.rest_length;
+        let edge = Edge {
+            l2: S::f32s::splat(simd, l2),
+            alpha: scale * (self.stretch * l2),
+        };
+        (edge, scale * self.bend)
+    }
+}
+
+/// What an edge resists with, for each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Edge<S: Simd> {
+    /// L² \[m²\].
+    pub l2: S::f32s,
+    /// α̃ L² \[m²/kg\].
+    pub alpha: S::f32s,
+}
+
+/// What the edges of chains resist with.
+pub(crate) trait Edges<S: Simd>: Copy {
+    /// Those from the particles `k` to the next.
+    fn at(self, simd: S, k: usize) -> Edge<S>;
+}
+
+/// Edges that are all the same along a chain.
+impl<S: Simd> Edges<S> for Edge<S> {
+    #[inline(always)]
+    fn at(self, _simd: S, _k: usize) -> Self {
+        self
+    }
+}
+
+/// Edges that differ: those of a mesh.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshLines<'a> {
+    /// L \[m\], 0 where there is no edge.
+    pub rest_length: &'a [f32],
+    /// By what `stretch` is multiplied [-].
+    pub scale: &'a [f32],
+    /// α̃ of an edge whose scale is 1 [1/kg].
+    pub stretch: f32,
+    /// From one edge of a chain to the next.
+    pub stride: usize,
+}
+
+impl<S: Simd> Edges<S> for MeshLines<'_> {
+    #[inline(always)]
+    fn at(self, simd: S, k: usize) -> Edge<S> {
+        let load =
+            |values: &[f32]| S::f32s::from_slice(simd, &values[k * self.stride..][..S::f32s::LEN]);
+        let length = load(self.rest_length);
+        let l2 = length * length;
+        Edge {
+            l2,
+            alpha: load(self.scale) * self.stretch * l2,
+        }
+    }
+}
