@@ -197,7 +197,7 @@ impl Args {
     /// The pins asked for, or those of the scene.
     pub fn pins(&self) -> Pins {
         self.pins.unwrap_or(match self.scene {
-            Scene::Hang => Pins::Corners,
+            Scene::Hang | Scene::Drag => Pins::Corners,
             Scene::Net => Pins::Border,
             Scene::Drape | Scene::Free | Scene::Posts | Scene::PutBack => Pins::None,
             Scene::Tube | Scene::Overlap => Pins::None,

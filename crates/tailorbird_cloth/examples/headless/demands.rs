@@ -11,9 +11,12 @@
 //! | overlap | a sheet without pins that a body reaches into when it appears |
 //! | upright | a curtain whose pins are released over the ground |
 //! | ball | a ball flies through a curtain and on |
+//! | drag | hung by two corners, which go 1 m aside and back twice in a second: up to 6.3 m/s and 79 m/s² |
 //! | pause-move | `Time<Virtual>` is paused, what holds a curtain is moved, time goes on |
 //! | hop | what holds a curtain is put elsewhere from one frame to the next, and a second later back |
 //! | grow | a curtain's scale goes from 1 to 2 and back within two seconds; half a second later it is mirrored |
+
+use std::f32::consts::TAU;
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -26,6 +29,7 @@ use tailorbird_cloth::prelude::*;
 use super::{
     cli::{self, Mesh},
     mesh,
+    paths::{grown, net_ball, post},
     scene::SIZE,
 };
 
@@ -99,6 +103,8 @@ pub enum Scene {
     Upright,
     /// A ball flies through a curtain.
     Ball,
+    /// Held by two corners that go to and fro.
+    Drag,
     /// A curtain whose holder is moved while time stands still.
     PauseMove,
     /// A curtain whose holder is put elsewhere from one frame to the next.
@@ -153,6 +159,7 @@ impl Scene {
             Self::Impaled => 12.0,
             Self::Net => 5.5,
             Self::Tube => 6.0,
+            Self::Drag => 3.0,
             Self::Overlap => 3.0,
             Self::Upright | Self::PauseMove => 4.0,
             Self::Hop | Self::Grow => 6.0,
@@ -198,6 +205,7 @@ impl Scene {
 pub struct Play {
     scene: Scene,
     demands: Demands,
+    side: u32,
     /// The post that moves, or the body.
     actor: Option<Entity>,
     /// Whether it was moved.
@@ -211,6 +219,7 @@ impl Play {
         let mut play = Self {
             scene,
             demands,
+            side: args.size,
             actor: None,
             moved: false,
         };
@@ -263,6 +272,19 @@ impl Play {
         self.actor = Some(post);
     }
 
+    fn drag(&self, world: &mut World, cloth: Entity, time: f32) {
+        let rest = world.get::<Cloth>(cloth).map(Cloth::rest_positions);
+        let (Some(rest), Some(mut pins)) = (rest, world.get_mut::<ClothPins>(cloth)) else {
+            return;
+        };
+        let [a, b] = [0, self.side - 1];
+        let along = (rest[b as usize] - rest[a as usize]).normalize();
+        let aside = along * 0.5 * (1.0 - (2.0 * TAU * time).cos());
+        pins.pins = [a, b]
+            .map(|i| ClothPin::at(i, rest[i as usize] + aside))
+            .to_vec();
+    }
+
     /// What happens between two frames, before the step that ends at `time` [s]: while time stands still.
     pub fn interrupt(&mut self, app: &mut App, time: f32) {
         if self.scene != Scene::PauseMove || self.moved || time <= 2.0 {
@@ -284,9 +306,9 @@ impl Play {
     pub fn act(&mut self, world: &mut World, cloth: Entity, time: f32) {
         let demands = self.demands;
         let place = match self.scene {
-            Scene::Posts => Some(post(time, &demands)),
+            Scene::Posts => Some(post(time, demands.apart)),
             Scene::PutBack if time > 4.0 => Some(Transform::default()),
-            Scene::PutBack => Some(post(time, &demands)),
+            Scene::PutBack => Some(post(time, demands.apart)),
             Scene::Hop if time > 3.0 => Some(Transform::default()),
             Scene::Hop if time > 2.0 => Some(Transform::from_xyz(demands.way, 0.0, 0.0)),
             Scene::Grow => {
@@ -296,6 +318,10 @@ impl Play {
                 None
             }
             Scene::Net => Some(net_ball(time)),
+            Scene::Drag => {
+                self.drag(world, cloth, time);
+                None
+            }
             Scene::Ball => Some(self.flying_ball(time)),
             Scene::ImpaledGone if time > 4.0 => {
                 if let Some(body) = self.actor.take() {
@@ -310,9 +336,9 @@ impl Play {
             }
             Scene::Upright if time > 1.0 => {
                 if let Some(mut pins) = world.get_mut::<ClothPins>(cloth)
-                    && pins.has_user_pins()
+                    && !pins.pins.is_empty()
                 {
-                    pins.release_user_pins();
+                    pins.pins.clear();
                 }
                 None
             }
@@ -329,30 +355,6 @@ impl Play {
     fn flying_ball(&self, time: f32) -> Transform {
         Transform::from_xyz(0.011, 1.007, self.demands.speed * (time - 1.0) - 2.0)
     }
-}
-
-/// Where the post is that moves.
-fn post(time: f32, demands: &Demands) -> Transform {
-    Transform::from_xyz(demands.apart * SIZE * time.min(1.0), 0.0, 0.0)
-}
-
-/// How large the curtain is that grows.
-fn grown(time: f32) -> Vec3 {
-    let part = (0.5 * (time - 2.0)).clamp(0.0, 1.0);
-    let scale = 1.5 - 0.5 * (std::f32::consts::TAU * part).cos();
-    let side = if time > 4.5 { -1.0 } else { 1.0 };
-    Vec3::new(side * scale, scale, scale)
-}
-
-/// From 0.35 m above the net to 0.6 m below it, and back.
-fn net_ball(time: f32) -> Transform {
-    let way = 0.95;
-    let down = if time < way + 1.0 {
-        time.min(way)
-    } else {
-        (way - (time - way - 1.0)).max(0.0)
-    };
-    Transform::from_xyz(0.011, 1.35 - down, 0.007)
 }
 
 /// The cloth of a scene, around its origin.

@@ -11,6 +11,7 @@ mod cli;
 mod demands;
 mod dump;
 mod mesh;
+mod paths;
 mod peaks;
 mod report;
 mod scene;

@@ -1,0 +1,32 @@
+//! Where things are that move.
+
+use std::f32::consts::TAU;
+
+use bevy_math::Vec3;
+use bevy_transform::components::Transform;
+
+use super::scene::SIZE;
+
+/// Where the post is that moves.
+pub fn post(time: f32, apart: f32) -> Transform {
+    Transform::from_xyz(apart * SIZE * time.min(1.0), 0.0, 0.0)
+}
+
+/// How large the curtain is that grows.
+pub fn grown(time: f32) -> Vec3 {
+    let part = (0.5 * (time - 2.0)).clamp(0.0, 1.0);
+    let scale = 1.5 - 0.5 * (TAU * part).cos();
+    let side = if time > 4.5 { -1.0 } else { 1.0 };
+    Vec3::new(side * scale, scale, scale)
+}
+
+/// From 0.35 m above the net to 0.6 m below it, and back.
+pub fn net_ball(time: f32) -> Transform {
+    let way = 0.95;
+    let down = if time < way + 1.0 {
+        time.min(way)
+    } else {
+        (way - (time - way - 1.0)).max(0.0)
+    };
+    Transform::from_xyz(0.011, 1.35 - down, 0.007)
+}

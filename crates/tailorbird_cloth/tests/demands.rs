@@ -1,0 +1,226 @@
+//! The scenes of `headless` that ask for more than the fabric has, or do to it what games do every day: whatever is asked, cloth ends in rest.
+//! The bounds are what was measured, with room for other machines; `src/solver/kernels/README.md` has the figures.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::{collections::BTreeMap, env, process::Command};
+
+use serde_json::Value;
+
+#[path = "../examples/headless/main.rs"]
+mod example;
+
+/// The arguments for [`as_the_example`], one on each line.
+const ARGUMENTS: &str = "HEADLESS_ARGUMENTS";
+
+/// Not a test: in a process of its own this is the example, as in `tests/headless.rs`.
+#[test]
+fn as_the_example() {
+    if let Ok(arguments) = env::var(ARGUMENTS) {
+        let name = std::iter::once("headless");
+        let code = example::headless(name.chain(arguments.lines()).map(Into::into));
+        std::process::exit(code.into());
+    }
+}
+
+fn report(arguments: &str) -> BTreeMap<String, Value> {
+    let output = Command::new(env::current_exe().unwrap())
+        .args(["--exact", "as_the_example", "--nocapture"])
+        .env(ARGUMENTS, format!("{arguments} --json").replace(' ', "\n"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{arguments}: {output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let (_, json) = text.split_once("running 1 test\n").unwrap();
+    serde_json::from_str(json).unwrap()
+}
+
+/// Runs a scene, and holds figures below bounds. What is not finite is `null`, and fails.
+fn holds(scene: &str, bounds: &[(&str, f64)]) {
+    let report = report(&format!("--scene {scene}"));
+    for (key, most) in bounds {
+        let value = report[*key].as_f64();
+        println!("{scene}: {key} {value:?}");
+        assert!(
+            value.is_some_and(|v| v <= *most),
+            "{scene}: {key} {value:?} > {most}"
+        );
+    }
+}
+
+const MESHES: [&str; 2] = ["grid", "irregular"];
+const SIZES: [u32; 3] = [17, 33, 65];
+const FABRICS: [&str; 7] = [
+    "silk", "cotton", "denim", "canvas", "leather", "rubber", "lace",
+];
+
+/// By mesh: the first for grids, the second for irregular ones.
+fn of(mesh: &str, [grid, irregular]: [f64; 2]) -> f64 {
+    if mesh == "grid" { grid } else { irregular }
+}
+
+#[test]
+fn posts_too_far_apart_stretch_a_sheet_evenly() {
+    for mesh in MESHES {
+        for apart in [0.02, 0.05, 0.1, 0.2] {
+            let bounds = [
+                ("speed_max", of(mesh, [0.05, 1.0])),
+                ("stretch_max", of(mesh, [apart + 0.05, apart + 0.9])),
+                ("speed_peak", 6.0),
+            ];
+            for size in SIZES {
+                holds(
+                    &format!("posts --apart {apart} --mesh {mesh} --size {size}"),
+                    &bounds,
+                );
+            }
+            for fabric in FABRICS {
+                let scene =
+                    format!("posts --apart {apart} --mesh {mesh} --size 33 --material {fabric}");
+                holds(&scene, &bounds);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_post_that_is_put_back_throws_nothing() {
+    for mesh in MESHES {
+        for size in SIZES {
+            for apart in [0.02, 0.05, 0.1, 0.2] {
+                let bounds = [
+                    ("speed_peak", of(mesh, [6.0, 10.0])),
+                    ("speed_max", 0.3),
+                    ("stretch_max", of(mesh, [0.01, 0.2])),
+                ];
+                holds(
+                    &format!("put-back --apart {apart} --mesh {mesh} --size {size}"),
+                    &bounds,
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_curtain_with_a_body_in_it_lies_still() {
+    for mesh in MESHES {
+        for size in SIZES {
+            for body in ["ball", "capsule", "box"] {
+                let scene = format!("impaled --mesh {mesh} --size {size} --body {body}");
+                holds(&scene, &[("speed_max", 0.6), ("speed_peak", 25.0)]);
+            }
+        }
+    }
+}
+
+#[test]
+fn and_is_whole_when_the_body_has_gone() {
+    for mesh in MESHES {
+        for size in SIZES {
+            for body in ["ball", "capsule", "box"] {
+                let scene = format!("impaled-gone --mesh {mesh} --size {size} --body {body}");
+                holds(
+                    &scene,
+                    &[("stretch_max", of(mesh, [0.02, 0.06])), ("speed_max", 2.0)],
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ball_that_is_pushed_into_a_net_leaves_it_whole() {
+    for mesh in MESHES {
+        for size in SIZES {
+            let bounds = [
+                ("speed_max", 0.1),
+                ("stretch_max", of(mesh, [0.01, 0.25])),
+                ("speed_peak", of(mesh, [5.0, 12.0])),
+                ("stretch_peak", of(mesh, [2.0, 6.0])),
+            ];
+            holds(&format!("net --mesh {mesh} --size {size}"), &bounds);
+        }
+    }
+}
+
+#[test]
+fn a_tube_that_is_too_tight_does_not_boil() {
+    for mesh in MESHES {
+        for tight in [0.01, 0.03, 0.1] {
+            // It may slip off, and fall for some seconds.
+            let bounds = [("speed_peak", 40.0), ("stretch_peak", 3.5)];
+            holds(
+                &format!("tube --tight {tight} --mesh {mesh} --size 33"),
+                &bounds,
+            );
+        }
+    }
+}
+
+#[test]
+fn what_overlaps_comes_out_slowly() {
+    for mesh in MESHES {
+        for depth in [0.005, 0.02, 0.05, 0.1] {
+            for body in ["ball", "box", "ground"] {
+                let scene =
+                    format!("overlap --depth {depth} --body {body} --mesh {mesh} --size 33");
+                // What falls off the body is as fast as that.
+                holds(&scene, &[("speed_peak", 12.0), ("stretch_max", 0.5)]);
+            }
+            let ground = format!("overlap --depth {depth} --body ground --mesh {mesh} --size 33");
+            holds(&ground, &[("speed_peak", 1.1), ("speed_max", 0.01)]);
+        }
+    }
+}
+
+#[test]
+fn a_ball_that_flies_through_leaves_nothing_behind() {
+    for mesh in MESHES {
+        for size in SIZES {
+            for speed in [20, 40] {
+                let scene = format!("ball --speed {speed} --mesh {mesh} --size {size}");
+                holds(&scene, &[("stretch_p99", of(mesh, [0.1, 1.5]))]);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_upright_curtain_falls_together() {
+    for mesh in MESHES {
+        for size in SIZES {
+            let bounds = [
+                ("highest_y", 1.0),
+                ("stretch_peak", 1.0),
+                ("stretch_max", 0.3),
+            ];
+            holds(&format!("upright --mesh {mesh} --size {size}"), &bounds);
+        }
+    }
+}
+
+#[test]
+fn what_games_do_every_day_is_not_felt() {
+    for scene in ["pause-move", "hop", "grow"] {
+        for mesh in MESHES {
+            for size in SIZES {
+                let bounds = [("speed_max", 0.05), ("stretch_peak", 0.05)];
+                holds(&format!("{scene} --mesh {mesh} --size {size}"), &bounds);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sheet_that_is_dragged_to_and_fro_stays_in_one_piece() {
+    for mesh in MESHES {
+        for size in SIZES {
+            let bounds = [
+                ("stretch_p99", of(mesh, [0.15, 0.3])),
+                ("stretch_peak", 1.5),
+            ];
+            holds(&format!("drag --mesh {mesh} --size {size}"), &bounds);
+        }
+    }
+}
