@@ -26,6 +26,8 @@
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
+use std::ops::Range;
+
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
@@ -173,8 +175,9 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     for e in inner..lines.len - 1 {
         sweep.advance::<BEND, CONTACT, false>(e);
     }
-    if substitute::<S, E, CONTACT>(simd, lines, edges, factors) && CONTACT != PRESSED {
-        share::<S, CONTACT>(simd, lines, factors);
+    let shared = substitute::<S, E, CONTACT>(simd, lines, edges, factors);
+    if CONTACT != PRESSED && !shared.is_empty() {
+        share::<S, CONTACT>(simd, lines, factors, shared);
     }
 }
 
@@ -277,14 +280,15 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 ///
 /// Of μ no more than κ/(4 w), w being the larger inverse mass of the two ends, acts along the edge as it lies. Since |u_a − u_b|² ≤
 /// 2 w (u_a²/w_a + u_b²/w_b) and a particle has two edges of its line, no wave across the line is then pulled back by more than κ of
-/// itself, whatever the masses. Returns whether there is tension beyond that, which [`share`] wants in place of the multipliers.
+/// itself, whatever the masses. Returns the edges
+/// among which there is tension beyond that, which [`share`] wants in place of the multipliers.
 #[inline(always)]
 fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     edges: E,
     factors: Shared,
-) -> bool {
+) -> Range<usize> {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
     // Bodies that a cloth carries have substeps enough for their weight.
@@ -294,46 +298,48 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8>(
         0.25 * LARGEST_KAPPA
     };
     let kappa = S::f32s::splat(simd, borne);
+    let pushes = S::f32s::splat(simd, 0.25 * lines.give.push);
+    let bounded = lines.give.push < f32::MAX;
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
     let mut w_far = lines.weight(simd, m - 1);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
-    // Of the edge before, as most have the same: the larger inverse mass, and what it allows.
-    let (mut largest, mut most) = (zero, zero);
-    let mut any = false;
-    // The most, as a multiple of what acts along the edge as it lies.
-    let cap = S::f32s::splat(simd, lines.give.pull / LARGEST_KAPPA);
-    let pushes = S::f32s::splat(simd, lines.give.push / LARGEST_KAPPA);
+    let mut shared = 0..0;
     for e in (0..m - 1).rev() {
         let near = lines.bent.load(simd, e * lanes);
         let w_near = lines.weight(simd, e);
-        let w = w_near.max(w_far);
-        if e + 2 == m || !w.simd_eq(largest).all_true() {
-            (largest, most) = (w, kappa / w);
-        }
         let slot = 2 * e * lanes;
-        let mu = factors.load(simd, slot + lanes) + factor * mu_far;
+        let mut mu = factors.load(simd, slot + lanes) + factor * mu_far;
         factor = factors.load(simd, slot);
         let d = far - near;
-        let mut beyond = zero;
-        let mut mu = mu;
-        if (zero - mu).simd_gt(most).any_true() {
-            any = true;
-            mu = mu.max(zero - most * cap);
+        let w = w_near.max(w_far);
+        if bounded {
+            mu = mu.min(pushes / w);
+        }
+        let over = (mu * w).simd_lt(zero - kappa);
+        mu_far = mu;
+        if over.any_true() {
+            let most = kappa / w;
             let Edge { l2, .. } = edges.at(simd, e);
+            let pulls = mu.max(zero - most * S::f32s::splat(simd, lines.give.pull / LARGEST_KAPPA));
+            mu_far = over.select(pulls, mu);
             // It will act on what is as long as at rest.
             let half = S::f32s::splat(simd, 0.5);
             let longer = half + half * d.dot(d) / l2.max(S::f32s::splat(simd, NO_MASS));
-            beyond = (zero - mu - most).max(zero) * longer.min(half * 4.0);
+            let beyond = (zero - pulls - most).max(zero) * longer.min(half * 4.0);
+            // None in between has any.
+            for k in e + 1..shared.start {
+                factors.store::<S>((2 * k + 1) * lanes, zero);
+            }
+            shared = e..shared.end.max(e + 1);
+            factors.store::<S>(slot + lanes, over.select(beyond, zero));
+            mu = over.select(zero - most, mu);
         }
-        factors.store::<S>(slot + lanes, beyond);
-        mu_far = mu;
-        let mu = mu.min(most * pushes).max(zero - most);
         let push = Factor(mu) * d;
         apply::<S, CONTACT>(simd, lines, lines.at(e + 1), (far, w_far), push - pull);
         (far, w_far, pull) = (near, w_near, push);
     }
     apply::<S, CONTACT>(simd, lines, lines.at(0), (far, w_far), nothing - pull);
-    any
+    shared
 }
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.

@@ -11,6 +11,8 @@
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
+use std::ops::Range;
+
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
@@ -90,19 +92,25 @@ impl<S: Simd> Symmetric<S> {
     }
 }
 
-/// Solves as many chains as a vector has lanes, whose X_k is in the second half of the slots of `factors`.
+/// Solves as many chains as a vector has lanes, whose X_k is in the second half of the slots of `factors` for a range of edges, and 0 for
+/// all others.
 #[inline(always)]
-pub(super) fn share<S: Simd, const CONTACT: u8>(simd: S, lines: Lines, factors: Shared) {
+pub(super) fn share<S: Simd, const CONTACT: u8>(
+    simd: S,
+    lines: Lines,
+    factors: Shared,
+    edges: Range<usize>,
+) {
     if CONTACT == FREE {
-        share_free(simd, lines, factors);
+        share_free(simd, lines, factors, edges);
     } else {
-        share_in_contact(simd, lines, factors);
+        share_in_contact(simd, lines, factors, edges);
     }
 }
 
 #[inline(always)]
-fn tension<S: Simd>(simd: S, lines: Lines, factors: Shared, k: usize) -> S::f32s {
-    if k + 1 < lines.len {
+fn tension<S: Simd>(simd: S, factors: Shared, edges: &Range<usize>, k: usize) -> S::f32s {
+    if k < edges.end {
         factors.load(simd, (2 * k + 1) * S::f32s::LEN)
     } else {
         S::f32s::splat(simd, 0.0)
@@ -110,13 +118,13 @@ fn tension<S: Simd>(simd: S, lines: Lines, factors: Shared, k: usize) -> S::f32s
 }
 
 #[inline(always)]
-fn share_free<S: Simd>(simd: S, lines: Lines, factors: Shared) {
-    let (m, lanes) = (lines.len, S::f32s::LEN);
+fn share_free<S: Simd>(simd: S, lines: Lines, factors: Shared, edges: Range<usize>) {
+    let lanes = S::f32s::LEN;
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     let (mut place, mut gain, mut before) = (V3::splat(simd, Vec3::ZERO), zero, zero);
-    for k in 0..m {
+    for k in edges.start..=edges.end {
         let (z, w) = (lines.particle(simd, k), lines.weight(simd, k));
-        let after = tension(simd, lines, factors, k);
+        let after = tension(simd, factors, &edges, k);
         let (to_near, to_far) = (w * before, w * after);
         let inv_pivot = one / (one + to_far + to_near * (one - gain));
         place = Factor(inv_pivot) * (z + Factor(to_near) * place);
@@ -126,8 +134,8 @@ fn share_free<S: Simd>(simd: S, lines: Lines, factors: Shared) {
         lines.shared.place.store(k * lanes, place);
     }
     let mut x = place;
-    lines.position.store(lines.at(m - 1), x);
-    for k in (0..m - 1).rev() {
+    lines.position.store(lines.at(edges.end), x);
+    for k in edges.rev() {
         let gain = factors.load(simd, 2 * k * lanes);
         let place: V3<S> = lines.shared.place.load(simd, k * lanes);
         x = place + Factor(gain) * x;
@@ -136,8 +144,8 @@ fn share_free<S: Simd>(simd: S, lines: Lines, factors: Shared) {
 }
 
 #[inline(always)]
-fn share_in_contact<S: Simd>(simd: S, lines: Lines, factors: Shared) {
-    let (m, lanes) = (lines.len, S::f32s::LEN);
+fn share_in_contact<S: Simd>(simd: S, lines: Lines, factors: Shared, edges: Range<usize>) {
+    let lanes = S::f32s::LEN;
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     let least = S::f32s::splat(simd, 1e-6);
     let nothing = V3::splat(simd, Vec3::ZERO);
@@ -146,10 +154,10 @@ fn share_in_contact<S: Simd>(simd: S, lines: Lines, factors: Shared) {
         diagonal: nothing,
         beside: nothing,
     };
-    for k in 0..m {
+    for k in edges.start..=edges.end {
         let (z, w) = (lines.particle(simd, k), lines.weight(simd, k));
         let n: V3<S> = lines.normal(simd, k);
-        let after = tension(simd, lines, factors, k);
+        let after = tension(simd, factors, &edges, k);
         let (to_near, to_far) = (w * before, w * after);
         let all = one + to_far + to_near;
         let minus = gain.scaled(zero - to_near);
@@ -175,8 +183,8 @@ fn share_in_contact<S: Simd>(simd: S, lines: Lines, factors: Shared) {
         lines.shared.beside.store(k * lanes, gain.beside);
     }
     let mut x = place;
-    for k in (0..m).rev() {
-        if k + 1 < m {
+    for k in (edges.start..=edges.end).rev() {
+        if k < edges.end {
             let gain = Symmetric {
                 diagonal: lines.shared.diagonal.load(simd, k * lanes),
                 beside: lines.shared.beside.load(simd, k * lanes),
