@@ -7,7 +7,18 @@
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-use crate::{particles::ClothParticles, solver::kernels::contact::Contacts, topology::Topology};
+use crate::{
+    particles::ClothParticles,
+    solver::kernels::{contact::Contacts, rigid_motion::RigidMotion},
+    topology::Topology,
+};
+
+/// The longest side of a box around points \[m\]; 0 where there is none.
+fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
+    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = points.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).max_element().max(0.0)
+}
 
 /// How it stands with what a cloth is asked for, as was seen at the end of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -18,8 +29,8 @@ pub(crate) struct Effort {
     steps: u32,
     /// Whether the fabric gives way, and moves slowly.
     pub recovers: bool,
-    /// How long the longest edge is, as a multiple of how large the cloth is at rest [-].
-    pub longest: f32,
+    /// Whether what touches it has drawn an edge far out.
+    pub drawn_out: bool,
 }
 
 /// Edges that are longer than at rest by more than this, and than the material lets them be, are strained [-].
@@ -32,7 +43,13 @@ const STRAINED: f32 = 0.05;
 const STILL_STRAINED: f32 = 0.01;
 
 /// And one of whose edges any is longer than this many times its length [-].
-pub(crate) const TORN: f32 = 8.0;
+const TORN: f32 = 8.0;
+
+/// An edge is drawn far out that is longer than so many times its length, and than this part of what the cloth is large [-].
+const DRAWN_OUT: Longest = Longest {
+    times: 4.0,
+    part: 0.25,
+};
 
 /// What is jerked, or hit, is strained for a moment, and rightly so: it has to be strained for so many steps before it gives way, where
 /// something is inside of it or it is torn, where something touches it, and where nothing does.
@@ -41,7 +58,10 @@ const MOMENTS: [u32; 3] = [1, 6, 60];
 /// How fast what is strained moves by itself, as seen from what holds it, at most; twice that while constraints move it [m/s].
 const SPEED: f32 = 1.0;
 
-/// Rate at which what is farther apart than the cloth is large comes back [1/s].
+/// What is farther apart than the cloth is large, times this, comes back faster [-]: no hand or post draws it out so far.
+const FAR: f32 = 1.5;
+
+/// And at this rate [1/s].
 const RATE: f32 = 8.0;
 
 /// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
@@ -53,9 +73,11 @@ impl Effort {
         if self.recovers { self.strained } else { 0.0 }
     }
 
-    /// Sees at the end of a step which part of the edges is strained, whether any is torn, and how long the longest is.
-    pub fn see(&mut self, strained: f32, torn: bool, longest: f32, contacts: &Contacts) {
-        (self.strained, self.longest) = (strained, longest);
+    /// Sees at the end of a step which part of the edges is strained, and how long the longest of those is.
+    pub fn see(&mut self, strained: f32, longest: Longest, contacts: &Contacts) {
+        self.strained = strained;
+        self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
+        let torn = longest.times > TORN;
         let most = if self.recovers {
             STILL_STRAINED
         } else {
@@ -75,44 +97,71 @@ impl Effort {
     }
 }
 
+/// How long the longest strained edge is.
+#[derive(Clone, Copy)]
+pub(crate) struct Longest {
+    /// As a multiple of its length at rest [-].
+    pub times: f32,
+    /// As a part of what the cloth is large [-].
+    pub part: f32,
+}
+
+/// What the motion of a strained cloth is seen from.
+struct Led {
+    /// How most of what holds it moved since the start of the substep, and the whole where nothing does \[m\].
+    way: Vec3,
+    /// How far what holds or touches it moved \[m\].
+    reach: f32,
+    /// How far what holds it is apart \[m\].
+    apart: f32,
+}
+
 impl ClothParticles {
-    /// How most of the particles that are held moved since the start of the substep, and how far what holds or touches the cloth moved
-    /// \[m\]. None where nothing holds it.
-    fn led(&mut self) -> Option<(Vec3, f32)> {
+    fn led(&mut self) -> Led {
         let mut scratch = std::mem::take(&mut self.lambda);
         let led = self.led_with(&mut scratch);
         self.lambda = scratch;
         led
     }
 
-    fn led_with(&self, lengths: &mut Vec<f32>) -> Option<(Vec3, f32)> {
+    fn led_with(&self, lengths: &mut Vec<f32>) -> Led {
         let held = self.inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0);
-        let ways = held.map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
+        let ways =
+            (held.clone()).map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
+        let touched = if self.contacts.any {
+            self.contacts.depth.iter().copied().fold(0.0, f32::max)
+        } else {
+            0.0
+        };
         lengths.clear();
         lengths.extend(ways.clone().map(Vec3::length));
-        let middle = lengths.len().checked_sub(1)? / 2;
+        let Some(middle) = lengths.len().checked_sub(1).map(|last| last / 2) else {
+            return Led {
+                way: RigidMotion::of_all(&self.mass, &self.position, &self.previous_position)
+                    .displacement,
+                reach: touched,
+                apart: 0.0,
+            };
+        };
         let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
         // What jumps away from the others leads nobody.
         let most = ways.filter(|way| way.length() <= 1.5 * middle);
         let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), way| {
             (sum + way, count + 1.0)
         });
-        let touched = if self.contacts.any {
-            self.contacts.depth.iter().copied().fold(0.0, f32::max)
-        } else {
-            0.0
-        };
-        Some((sum / f32::max(count, 1.0), middle.max(touched)))
+        Led {
+            way: sum / f32::max(count, 1.0),
+            reach: middle.max(touched),
+            apart: extent(held.map(|(i, _)| self.position.get(i))),
+        }
     }
 
-    /// Slows what is strained between things that hold it, as seen from them, during a substep.
+    /// Slows what is strained, as seen from what holds it, during a substep.
     pub(crate) fn calm_strained(&mut self, seconds: f32) {
         if !self.effort.recovers {
             return;
         }
-        let Some((way, reach)) = self.led() else {
-            return;
-        };
+        let Led { way, reach, .. } = self.led();
         let part = 1.0 - (-CALMED * seconds).exp();
         for (i, w) in self.inv_mass.iter().enumerate() {
             if *w > 0.0 {
@@ -129,14 +178,9 @@ impl ClothParticles {
         if !self.effort.recovers {
             return;
         }
-        let Some((way, reach)) = self.led() else {
-            return;
-        };
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (low, high) =
-            (self.previous_position.iter()).fold(none, |(low, high), p| (low.min(p), high.max(p)));
-        let too_far = ((high - low).max_element() - size).max(0.0);
-        let most = (2.0 * SPEED + RATE * too_far) * seconds + reach;
+        let Led { way, reach, apart } = self.led();
+        let too_far = extent(self.previous_position.iter()) - f32::max(FAR * size, apart + size);
+        let most = (2.0 * SPEED + RATE * too_far.max(0.0)) * seconds + reach;
         for (i, w) in self.inv_mass.iter().enumerate() {
             if *w > 0.0 {
                 let start = self.previous_position.get(i) + way;

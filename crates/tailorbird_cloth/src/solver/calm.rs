@@ -10,7 +10,7 @@ use super::kernels::{
     squeeze,
 };
 use crate::{
-    effort::{self, Effort},
+    effort::{Effort, Longest},
     particles::ClothParticles,
     points::Points,
     topology::{Topology, lattice::Lattice},
@@ -43,8 +43,11 @@ pub(crate) fn calm(
         // What carries bodies takes more substeps for them already, and would throw them.
         if contacts.around.couplings.is_empty() {
             let side = lattice.columns.max(lattice.rows) as f32;
-            let torn = survey.longest > effort::TORN;
-            effort.see(survey.strained, torn, survey.longest / side, contacts);
+            let longest = Longest {
+                times: survey.longest,
+                part: survey.longest / side,
+            };
+            effort.see(survey.strained, longest, contacts);
         } else {
             *effort = Effort::default();
         }
@@ -69,15 +72,20 @@ pub(crate) fn calm(
             let [a, b] = [a, b].map(|i| position.get(i as usize));
             let (q, l2) = (a.distance_squared(b), rest_length * rest_length);
             squeezed |= q < squeeze::LEAST * l2;
-            far = far.max(q / l2);
-            farthest = farthest.max(q);
-            strained += u32::from(q > allowed * allowed * l2);
             count += 1;
+            if q > allowed * allowed * l2 {
+                far = far.max(q / l2);
+                farthest = farthest.max(q);
+                strained += 1;
+            }
         }
         if contacts.around.couplings.is_empty() {
             let part = strained as f32 / count.max(1) as f32;
-            let torn = far > effort::TORN * effort::TORN;
-            effort.see(part, torn, farthest.sqrt() / fabric.size(), contacts);
+            let longest = Longest {
+                times: far.sqrt(),
+                part: farthest.sqrt() / fabric.size(),
+            };
+            effort.see(part, longest, contacts);
         } else {
             *effort = Effort::default();
         }

@@ -71,8 +71,8 @@ impl Pass<'_> {
         super::alpha_tilde(compliance, self.seconds)
     }
 
-    /// The lines at distance `across` from each other, whose particles are `along` apart \[m\].
-    fn line(&self, compliance: f32, along: f32, across: f32) -> LineStiffness {
+    /// The lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal density [kg/m²].
+    fn line(&self, compliance: f32, along: f32, across: f32, density: f32) -> LineStiffness {
         let bend = self.material.bend_compliance * along * along * along / across;
         LineStiffness {
             rest_length: along,
@@ -83,6 +83,7 @@ impl Pass<'_> {
             } else {
                 f32::INFINITY
             },
+            mass: density * along * across,
         }
     }
 
@@ -190,7 +191,7 @@ impl Pass<'_> {
             let place = particles.position.get(coupling.particle);
             coupling.held -= coupling.normal.dot(place);
         }
-        self.bend(topology, particles);
+        self.bend(&topology.hinges, particles);
         if let Some(lattice) = &topology.lattice {
             self.solve_lattice(lattice, particles);
         } else if let Some(fabric) = &topology.fabric {
@@ -201,6 +202,7 @@ impl Pass<'_> {
     fn solve_lattice(&self, lattice: &Lattice, particles: &mut ClothParticles) {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let (level, odd) = (self.level, self.is_odd());
+        let density = particles.areal_density;
         let (sheet, _) = self.sheet(particles, [columns, rows]);
         let [dx, dy] = lattice.spacing.to_array();
         let shear = Shear {
@@ -219,8 +221,8 @@ impl Pass<'_> {
             }
         });
 
-        let weft = self.line(self.material.weft_compliance, dx, dy);
-        let warp = self.line(self.material.warp_compliance, dy, dx);
+        let weft = self.line(self.material.weft_compliance, dx, dy, density);
+        let warp = self.line(self.material.warp_compliance, dy, dx, density);
         let solve_columns = || {
             self.crew.share(0..columns, |columns| {
                 lattice::solve_columns(level, sheet, warp, columns);

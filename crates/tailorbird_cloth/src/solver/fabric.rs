@@ -11,12 +11,35 @@ use super::{
 };
 use crate::{
     particles::ClothParticles,
-    topology::{Topology, fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
+    topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
 
 impl Pass<'_> {
-    /// The chains along one of the threads, then along the other.
+    /// Shear, the chains of all passes, shear, the chains in the other order.
+    ///
+    /// In one order alone, what several passes do one after the other turns some waves round: a mesh that nobody touches would gain energy.
+    /// There and back it is symmetric, and takes from all of them.
     pub(super) fn solve_fabric(&self, fabric: &Fabric, particles: &mut ClothParticles) {
+        let passes = fabric.chains().passes.len();
+        self.solve_shear(fabric, particles);
+        self.solve_chains(fabric, 0..passes, particles);
+        self.solve_shear(fabric, particles);
+        self.solve_chains(fabric, (0..passes).rev(), particles);
+    }
+
+    fn solve_shear(&self, fabric: &Fabric, particles: &mut ClothParticles) {
+        let alpha_tilde = self.alpha_tilde(self.material.shear_compliance);
+        with_packed(&mut particles.position, &particles.inv_mass, |all| {
+            mesh::solve_shear(fabric.shear(), alpha_tilde, all);
+        });
+    }
+
+    fn solve_chains(
+        &self,
+        fabric: &Fabric,
+        order: impl Iterator<Item = usize>,
+        particles: &mut ClothParticles,
+    ) {
         let material = self.material;
         let ClothParticles {
             position,
@@ -36,12 +59,7 @@ impl Pass<'_> {
             give: self.give(*effort, contacts.any),
         };
         let passes = &fabric.chains().passes;
-        for k in 0..passes.len() {
-            let k = if self.is_odd() {
-                passes.len() - 1 - k
-            } else {
-                k
-            };
+        for k in order {
             let compliance = match passes[k].family {
                 EdgeFamily::Warp => material.warp_compliance,
                 EdgeFamily::Weft | EdgeFamily::Shear => material.weft_compliance,
@@ -51,22 +69,13 @@ impl Pass<'_> {
         }
     }
 
-    /// Bending of what is no flat lattice, then the shear of what is no lattice.
-    pub(super) fn bend(&self, topology: &Topology, particles: &mut ClothParticles) {
-        let (hinges, fabric) = (&topology.hinges, topology.fabric.as_ref());
-        if hinges.is_empty() && fabric.is_none() {
-            return;
+    /// Bending of what is no flat lattice.
+    pub(super) fn bend(&self, hinges: &HingeConstraints, particles: &mut ClothParticles) {
+        if !hinges.is_empty() {
+            with_packed(&mut particles.position, &particles.inv_mass, |all| {
+                self.solve_hinges(hinges, all);
+            });
         }
-        let ClothParticles {
-            position, inv_mass, ..
-        } = particles;
-        with_packed(position, inv_mass, |all| {
-            self.solve_hinges(hinges, all);
-            if let Some(fabric) = fabric {
-                let alpha_tilde = self.alpha_tilde(self.material.shear_compliance);
-                mesh::solve_shear(fabric.shear(), alpha_tilde, all);
-            }
-        });
     }
 
     fn solve_hinges(&self, hinges: &HingeConstraints, all: &mut [Packed]) {

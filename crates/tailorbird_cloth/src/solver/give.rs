@@ -13,9 +13,6 @@ use crate::{effort::Effort, topology::fabric::Fabric};
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;
 
-/// [`Recovery::least`] of what comes back at once.
-const ALL: f32 = 1e6;
-
 /// How fast what is farther from a pin than it reaches comes back while the cloth is strained, at least [m/s].
 const TETHER_SPEED: f32 = 0.05;
 
@@ -29,21 +26,18 @@ const COMPLIANCE: f32 = 0.02;
 const LOAD: f32 = 0.015;
 
 impl Pass<'_> {
-    /// How what is farther from a pin than it reaches comes back.
-    pub(super) fn recovery<'b>(&self, effort: Effort, start: SharedPoints<'b>) -> Recovery<'b> {
-        if !effort.recovers {
-            return Recovery {
-                start,
-                least: ALL,
-                part: 1.0,
-            };
-        }
+    /// How what is farther from a pin than it reaches comes back; none where it does so at once.
+    pub(super) fn recovery<'b>(
+        &self,
+        effort: Effort,
+        start: SharedPoints<'b>,
+    ) -> Option<Recovery<'b>> {
         let size = self.size().max(SMALLEST);
-        Recovery {
+        effort.recovers.then(|| Recovery {
             start,
             least: 2.0 * TETHER_SPEED * self.seconds / size,
             part: (TETHER_RATE * self.seconds).min(1.0),
-        }
+        })
     }
 
     /// How far chains give way.

@@ -91,8 +91,8 @@ impl ClothSolver {
     /// How many substeps a cloth needs in a step of 1/60 s.
     ///
     /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
-    /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 12th of
-    /// the square root of its particles, 8 to 16. Both take up to 32, a fifth of the longer side, while a hand holds the cloth.
+    /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 16th of
+    /// the square root of its particles, 6 to 16. Both take up to 32, a fifth of the longer side, while a hand holds the cloth.
     /// [`GaussSeidel`](Self::GaussSeidel): 16.
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
@@ -104,7 +104,7 @@ impl ClothSolver {
                 } else {
                     // The chains of a mesh are shorter and bent, and more of them meet at a particle.
                     let side = (topology.particles() as f32).sqrt().ceil() as u32;
-                    side.div_ceil(12).max(8)
+                    side.div_ceil(16).max(6)
                 };
                 needed.next_multiple_of(2).min(16)
             }

@@ -13,12 +13,19 @@ pub struct LineStiffness {
     pub stretch: f32,
     /// α̃ of the triples [1/kg]; infinite is without bending.
     pub bend: f32,
+    /// Mass of a particle within the sheet \[kg\]; none has less, apart from those at the border.
+    pub mass: f32,
 }
 
 impl LineStiffness {
-    /// The edges and the α̃ of the triples of the lines from `first` on, one in each lane, of `count` in all.
+    /// The edges of the lines from `first` on, one in each lane, of `count` in all.
     #[inline(always)]
-    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, S::f32s) {
+    pub(crate) fn of_lines<S: Simd>(
+        self,
+        simd: S,
+        first: usize,
+        count: usize,
+    ) -> (Edge<S>, Whole<S>) {
         let mut scale = [1.0; WIDEST];
         if first == 0 {
             scale[0] = 2.0;
@@ -33,8 +40,21 @@ impl LineStiffness {
             l2: S::f32s::splat(simd, l2),
             alpha: scale * (self.stretch * l2),
         };
-        (edge, scale * self.bend)
+        let whole = Whole {
+            bend: scale * self.bend,
+            bears: S::f32s::splat(simd, 0.25 * self.mass) / scale,
+        };
+        (edge, whole)
     }
+}
+
+/// What holds all along a line, for each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Whole<S: Simd> {
+    /// α̃ of the triples [1/kg].
+    pub bend: S::f32s,
+    /// |μ| of an edge with κ = 4 w |μ| = 1 \[kg\], w being the largest inverse mass, of particles at the ends half.
+    pub bears: S::f32s,
 }
 
 /// What an edge resists with, for each lane.

@@ -9,8 +9,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
-    line::{self, Edge, FREE, Give, LineStiffness, Lines, PRESSED, TOUCHING},
-    share::Scratch,
+    line::{self, Edge, FREE, Give, LineStiffness, Lines, PRESSED, TOUCHING, Whole},
     tile::Tile,
 };
 
@@ -85,7 +84,7 @@ pub(crate) fn solve_columns(
     columns: Range<usize>,
 ) {
     sheet.check();
-    with_scratch(sheet.rows * WIDEST * 19, |scratch| {
+    with_scratch(sheet.rows * WIDEST * 13, |scratch| {
         if sheet.pressed.is_some() {
             for_bodies!(level, simd => solve_columns_with::<_, true>(simd, sheet, stiffness, columns, scratch));
         } else {
@@ -166,7 +165,7 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
 /// Solves each row of a range.
 pub(crate) fn solve_rows(level: Level, sheet: Sheet, stiffness: LineStiffness, rows: Range<usize>) {
     sheet.check();
-    with_scratch(sheet.columns * WIDEST * 19, |scratch| {
+    with_scratch(sheet.columns * WIDEST * 13, |scratch| {
         if sheet.pressed.is_some() {
             for_bodies!(level, simd => solve_rows_with::<_, true>(simd, sheet, stiffness, rows, scratch));
         } else {
@@ -229,7 +228,7 @@ fn solve_rows_with<S: Simd, const BODIES: bool>(
 fn solve_block<S: Simd, const BODIES: bool>(
     simd: S,
     lines: Lines,
-    (edge, bend): (Edge<S>, S::f32s),
+    (edge, whole): (Edge<S>, Whole<S>),
     contact: bool,
     factors: Shared,
 ) {
@@ -237,11 +236,11 @@ fn solve_block<S: Simd, const BODIES: bool>(
         #[inline(always)]
         || {
             if BODIES {
-                line::solve::<S, _, true, PRESSED>(simd, lines, edge, bend, factors);
+                line::solve::<S, _, true, PRESSED>(simd, lines, edge, whole, factors);
             } else if contact {
-                line::solve::<S, _, true, TOUCHING>(simd, lines, edge, bend, factors);
+                line::solve::<S, _, true, TOUCHING>(simd, lines, edge, whole, factors);
             } else {
-                line::solve::<S, _, true, FREE>(simd, lines, edge, bend, factors);
+                line::solve::<S, _, true, FREE>(simd, lines, edge, whole, factors);
             }
         },
     );
@@ -253,13 +252,13 @@ pub(super) struct Block<'a> {
     pub inv_mass: Shared<'a>,
     pub normal: SharedPoints<'a>,
     pub pressed: Shared<'a>,
-    pub shared: Scratch<'a>,
+    pub shared: SharedPoints<'a>,
 }
 
 impl<'a> Block<'a> {
     #[inline(always)]
     pub fn new(scratch: &'a mut [f32], len: usize, width: usize) -> Self {
-        let (mut parts, _) = scratch.split_at_mut(17 * len * width);
+        let (mut parts, _) = scratch.split_at_mut(11 * len * width);
         let mut next = || {
             let (part, rest) = std::mem::take(&mut parts).split_at_mut(len * width);
             parts = rest;
@@ -270,12 +269,7 @@ impl<'a> Block<'a> {
             y: next(),
             z: next(),
         };
-        let [position, normal] = [points(), points()];
-        let shared = Scratch {
-            place: points(),
-            diagonal: points(),
-            beside: points(),
-        };
+        let [position, normal, shared] = [points(), points(), points()];
         Self {
             position,
             normal,

@@ -32,10 +32,10 @@ use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 pub use super::edges::LineStiffness;
-pub(crate) use super::edges::{Edge, Edges, MeshLines};
+pub(crate) use super::edges::{Edge, Edges, MeshLines, Whole};
 use super::{
     lanes::{Factor, Shared, SharedPoints, V3},
-    share::{Scratch, share},
+    share::share,
 };
 
 /// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
@@ -93,8 +93,8 @@ pub(crate) struct Lines<'a> {
     /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
     /// lies like this as well.
     pub bent: SharedPoints<'a>,
-    /// For what a substep does not stand.
-    pub shared: Scratch<'a>,
+    /// Scratch for what a substep does not stand, side by side.
+    pub shared: SharedPoints<'a>,
     /// How far the chains give way.
     pub give: Give,
     /// First particle of the first lane.
@@ -150,8 +150,7 @@ struct Sweep<'a, S: Simd, E> {
     g: S::f32s,
 }
 
-/// Solves as many chains as a vector has lanes. `factors` is scratch of at least 2 · len · lanes; `bend` is α̃ of the triples
-/// [1/kg].
+/// Solves as many chains as a vector has lanes. `factors` is scratch of at least 2 · len · lanes.
 ///
 /// One vector at a time: with two, whose divisions could fill the gaps of one another, the state no longer fits the registers,
 /// and a quarter of the speed is lost (AVX-512).
@@ -160,7 +159,7 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     edges: E,
-    bend: S::f32s,
+    Whole { bend, bears }: Whole<S>,
     factors: Shared,
 ) {
     if lines.len < 2 {
@@ -175,9 +174,17 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     for e in inner..lines.len - 1 {
         sweep.advance::<BEND, CONTACT, false>(e);
     }
-    let shared = substitute::<S, E, CONTACT>(simd, lines, edges, factors);
+    let shared = if lines.give.pull.min(lines.give.push) < f32::MAX {
+        substitute::<S, E, CONTACT, true>(simd, lines, edges, factors, bears)
+    } else {
+        substitute::<S, E, CONTACT, false>(simd, lines, edges, factors, bears)
+    };
     if CONTACT != PRESSED && !shared.is_empty() {
-        share::<S, CONTACT>(simd, lines, factors, shared);
+        // Apart, so that the registers are those of the lines.
+        simd.vectorize(
+            #[inline(always)]
+            || share::<S, CONTACT>(simd, lines, factors, shared),
+        );
     }
 }
 
@@ -278,67 +285,56 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
 ///
-/// Of μ no more than κ/(4 w), w being the larger inverse mass of the two ends, acts along the edge as it lies. Since |u_a − u_b|² ≤
-/// 2 w (u_a²/w_a + u_b²/w_b) and a particle has two edges of its line, no wave across the line is then pulled back by more than κ of
-/// itself, whatever the masses. Returns the edges
-/// among which there is tension beyond that, which [`share`] wants in place of the multipliers.
+/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of the particles at its ends
+/// half ([`Whole::bears`]). Since |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), p being 1/2, and 1 at an end, and a particle has two edges of its
+/// line, and one at an end, no wave across the line is then pulled back by more than κ of itself. Returns the edges among which there is
+/// tension beyond that, which [`share`] wants in place of the multipliers.
 #[inline(always)]
-fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8>(
+fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     simd: S,
     lines: Lines,
     edges: E,
     factors: Shared,
+    bears: S::f32s,
 ) -> Range<usize> {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
-    // Bodies that a cloth carries have substeps enough for their weight.
-    let borne = if CONTACT == PRESSED {
-        f32::MAX
-    } else {
-        0.25 * LARGEST_KAPPA
-    };
-    let kappa = S::f32s::splat(simd, borne);
-    let pushes = S::f32s::splat(simd, 0.25 * lines.give.push);
-    let bounded = lines.give.push < f32::MAX;
+    let half = S::f32s::splat(simd, 0.5);
+    let least_l2 = S::f32s::splat(simd, NO_MASS);
+    let [borne, pulls, pushes] =
+        [LARGEST_KAPPA, lines.give.pull, lines.give.push].map(|kappa| bears * kappa);
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
-    let mut w_far = lines.weight(simd, m - 1);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
     let mut shared = 0..0;
     for e in (0..m - 1).rev() {
         let near = lines.bent.load(simd, e * lanes);
-        let w_near = lines.weight(simd, e);
         let slot = 2 * e * lanes;
         let mut mu = factors.load(simd, slot + lanes) + factor * mu_far;
         factor = factors.load(simd, slot);
         let d = far - near;
-        let w = w_near.max(w_far);
-        if bounded {
-            mu = mu.min(pushes / w);
+        if GIVES {
+            mu = mu.min(pushes).max(zero - pulls);
         }
-        let over = (mu * w).simd_lt(zero - kappa);
         mu_far = mu;
-        if over.any_true() {
-            let most = kappa / w;
-            let Edge { l2, .. } = edges.at(simd, e);
-            let pulls = mu.max(zero - most * S::f32s::splat(simd, lines.give.pull / LARGEST_KAPPA));
-            mu_far = over.select(pulls, mu);
+        // Bodies that a cloth carries have substeps enough for their weight.
+        if CONTACT != PRESSED && mu.simd_lt(zero - borne).any_true() {
+            let beyond = (zero - mu - borne).max(zero);
             // It will act on what is as long as at rest.
-            let half = S::f32s::splat(simd, 0.5);
-            let longer = half + half * d.dot(d) / l2.max(S::f32s::splat(simd, NO_MASS));
-            let beyond = (zero - pulls - most).max(zero) * longer.min(half * 4.0);
+            let inv_l2 = S::f32s::splat(simd, 1.0) / edges.at(simd, e).l2.max(least_l2);
+            let longer = half + d.dot(d) * (half * inv_l2);
             // None in between has any.
             for k in e + 1..shared.start {
                 factors.store::<S>((2 * k + 1) * lanes, zero);
             }
             shared = e..shared.end.max(e + 1);
-            factors.store::<S>(slot + lanes, over.select(beyond, zero));
-            mu = over.select(zero - most, mu);
+            factors.store::<S>(slot + lanes, beyond * longer.min(half * 4.0));
+            mu = mu.max(zero - borne);
         }
         let push = Factor(mu) * d;
-        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), (far, w_far), push - pull);
-        (far, w_far, pull) = (near, w_near, push);
+        apply::<S, CONTACT>(simd, lines, lines.at(e + 1), far, push - pull);
+        (far, pull) = (near, push);
     }
-    apply::<S, CONTACT>(simd, lines, lines.at(0), (far, w_far), nothing - pull);
+    apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
     shared
 }
 
@@ -348,7 +344,7 @@ fn apply<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     i: usize,
-    (position, w): (V3<S>, S::f32s),
+    position: V3<S>,
     mut push: V3<S>,
 ) {
     if CONTACT != FREE {
@@ -360,6 +356,7 @@ fn apply<S: Simd, const CONTACT: u8>(
             pressed.store::<S>(i, pressed.load(simd, i) + along);
         }
     }
+    let w = lines.inv_mass.load(simd, i);
     lines.position.store(i, position + Factor(w) * push);
 }
 

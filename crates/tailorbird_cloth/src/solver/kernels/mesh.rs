@@ -12,7 +12,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::{Block, for_bodies},
-    line::{self, FREE, Give, MeshLines, PRESSED, TOUCHING},
+    line::{self, FREE, Give, MeshLines, NO_MASS, PRESSED, TOUCHING, Whole},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
 };
@@ -127,7 +127,7 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     mesh.check();
     let batches = &mesh.fabric.chains().batches[batches];
     let longest = batches.iter().map(|batch| batch.length).max().unwrap_or(0);
-    with_scratch(longest * WIDEST * 19, |scratch| {
+    with_scratch(longest * WIDEST * 13, |scratch| {
         for batch in batches {
             if mesh.pressed.is_some() {
                 for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
@@ -157,14 +157,17 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             // Lanes are taken in order.
             break;
         }
+        let (zero, quarter) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 0.25));
+        let mut lightest = S::f32s::splat(simd, NO_MASS);
         for k in 0..m {
             let lanes = Lanes::of_link::<S>(mesh.fabric, mesh.fabric.particle_or_last(), start, k);
+            let w = lanes.load(simd, mesh.inv_mass);
+            // As in `line`: what is at an end counts half; that at the other is not known apart.
+            lightest = lightest.max(if k == 0 { w * 0.5 } else { w });
             block
                 .position
                 .store(k * n, lanes.load_points(simd, mesh.position));
-            block
-                .inv_mass
-                .store::<S>(k * n, lanes.load(simd, mesh.inv_mass));
+            block.inv_mass.store::<S>(k * n, w);
             if let Some(normal) = mesh.normal {
                 block.normal.store(k * n, lanes.load_points(simd, normal));
             }
@@ -178,13 +181,17 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             stretch,
             stride: LANES,
         };
-        let (lines, zero) = (block.lines(m, n, mesh.give), S::f32s::splat(simd, 0.0));
+        let whole = Whole {
+            bend: zero,
+            bears: quarter / lightest,
+        };
+        let lines = block.lines(m, n, mesh.give);
         if BODIES {
-            line::solve::<S, _, false, PRESSED>(simd, lines, edges, zero, factors);
+            line::solve::<S, _, false, PRESSED>(simd, lines, edges, whole, factors);
         } else if mesh.normal.is_some() {
-            line::solve::<S, _, false, TOUCHING>(simd, lines, edges, zero, factors);
+            line::solve::<S, _, false, TOUCHING>(simd, lines, edges, whole, factors);
         } else {
-            line::solve::<S, _, false, FREE>(simd, lines, edges, zero, factors);
+            line::solve::<S, _, false, FREE>(simd, lines, edges, whole, factors);
         }
         for k in 0..m {
             let moved: V3<S> = block.position.load(simd, k * n);

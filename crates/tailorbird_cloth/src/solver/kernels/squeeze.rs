@@ -24,7 +24,7 @@ pub(crate) struct Survey {
     pub squeezed: bool,
     /// The part of them that is longer than it should be [-].
     pub strained: f32,
-    /// How long the longest is, as a multiple of its length at rest [-].
+    /// How long the longest of those that are strained is, as a multiple of its length at rest [-]; 0 where none is.
     pub longest: f32,
 }
 
@@ -52,6 +52,7 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, allowed: f32) -> S
             (columns - 1, 1, least.x, most.x, per_square.x),
             (below, columns, least.y, most.y, per_square.y),
         ] {
+            let (least, most) = (S::f32s::splat(simd, least), S::f32s::splat(simd, most));
             each_window(
                 simd,
                 0..count,
@@ -60,14 +61,19 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, allowed: f32) -> S
                     let from: V3<S> = sheet.position.load_at(simd, window, first);
                     let d = sheet.position.load_at(simd, window, first + to) - from;
                     let q = d.dot(d);
-                    squeezed |= q.simd_lt(S::f32s::splat(simd, least)).any_true();
-                    farthest = farthest.max(q * per_square);
-                    let long = q.simd_gt(S::f32s::splat(simd, most));
-                    of_row += (long & window.todo(simd)).select(one, zero);
+                    let (short, long) = (q.simd_lt(least), q.simd_gt(most));
+                    if (short | long).any_true() {
+                        squeezed |= short.any_true();
+                        let long = long & window.todo(simd);
+                        farthest = farthest.max(long.select(q * per_square, zero));
+                        of_row += long.select(one, zero);
+                    }
                 },
             );
         }
-        strained += of_row.as_slice().iter().map(|n| *n as usize).sum::<usize>();
+        if of_row.simd_gt(zero).any_true() {
+            strained += of_row.as_slice().iter().map(|n| *n as usize).sum::<usize>();
+        }
     }
     let edges = sheet.rows * (columns - 1) + (sheet.rows - 1) * columns;
     Survey {

@@ -49,7 +49,7 @@ pub(crate) fn solve(
     level: Level,
     sheet: Sheet,
     tethers: &[Option<Tether<Reading>>],
-    (slack, recovery): (f32, Recovery),
+    (slack, recovery): (f32, Option<Recovery>),
     particles: Range<usize>,
 ) {
     sheet.check();
@@ -81,7 +81,7 @@ pub(crate) fn solve_straight(
     level: Level,
     sheet: Sheet,
     tethers: &[Option<Tether<Straight>>],
-    (slack, recovery): (f32, Recovery),
+    (slack, recovery): (f32, Option<Recovery>),
     rows: Range<usize>,
 ) {
     sheet.check();
@@ -115,13 +115,13 @@ pub(crate) fn solve_straight(
 
 /// Pulls the particles of a window, from `first` on. `l2` tells the square of how far they get.
 ///
-/// What is too far away already when the substep begins comes back no faster than the [`Recovery`] says, and what
+/// What is too far away already when the substep begins comes back no faster than the [`Recovery`] says, where there is one, and what
 /// is in contact moves along the surface alone.
 #[inline(always)]
 fn pull<S: Simd, W: Copy>(
     simd: S,
     sheet: Sheet,
-    (tethers, recovery): (&[Option<Tether<W>>], Recovery),
+    (tethers, recovery): (&[Option<Tether<W>>], Option<Recovery>),
     window: Window,
     first: usize,
     l2: impl Fn(W, f32) -> S::f32s,
@@ -138,21 +138,20 @@ fn pull<S: Simd, W: Copy>(
         let beyond = q.simd_gt(l2);
         if beyond.any_true() {
             taut = true;
-            let before: V3<S> = recovery.start.load_at(simd, window, first);
-            let before = before - V3::splat(simd, tether.anchor_before);
-            l2 = recovery.target::<S>(before.dot(before), l2);
+            if let Some(recovery) = recovery {
+                let before: V3<S> = recovery.start.load_at(simd, window, first);
+                let before = before - V3::splat(simd, tether.anchor_before);
+                l2 = recovery.target::<S>(before.dot(before), l2);
+            }
             let excess = (q - l2).max(zero);
             let s = (excess + excess) / (q * 3.0 + l2);
             p = p - Factor(beyond.select(s, zero)) * d;
         }
     }
     if taut {
-        if let Some(normal) = sheet.normal {
+        if let (Some(normal), None) = (sheet.normal, sheet.pressed) {
             let n: V3<S> = normal.load_at(simd, window, first);
-            let moved = p - start;
-            if sheet.pressed.is_none() {
-                p = p - Factor(n.dot(moved)) * n;
-            }
+            p = p - Factor(n.dot(p - start)) * n;
         }
         let w = sheet.inv_mass.load_at(simd, window, first);
         let free = w.simd_gt(zero);

@@ -27,6 +27,7 @@ fn lines() {
                     rest_length: 1.0,
                     stretch: 0.01,
                     bend,
+                    mass: 0.5,
                 };
                 let mut start = State::sheet(size);
                 start.bodies = bodies;
@@ -58,6 +59,7 @@ fn lines_tell_what_they_press() {
         rest_length: 1.0,
         stretch: 0.01,
         bend: f32::INFINITY,
+        mass: 0.5,
     };
     let mut state = State::sheet([19, 17]);
     state.bodies = true;
@@ -127,7 +129,7 @@ fn tethers() {
             });
             state.with_sheet_and_start(true, |sheet, recovery| {
                 for block in rows {
-                    tether::solve_straight(level, sheet, &tethers, (1.001, recovery), block);
+                    tether::solve_straight(level, sheet, &tethers, (1.001, Some(recovery)), block);
                 }
             });
         });
@@ -149,7 +151,7 @@ fn tethers() {
             let particles = blocks(n, cuts);
             state.with_sheet_and_start(false, |sheet, recovery| {
                 for block in particles {
-                    tether::solve(level, sheet, &tethers, (1.001, recovery), block);
+                    tether::solve(level, sheet, &tethers, (1.001, Some(recovery)), block);
                 }
             });
         });
