@@ -39,6 +39,7 @@
 
 mod checks;
 mod film;
+mod known;
 #[path = "../../examples/headless/mesh.rs"]
 #[expect(dead_code, reason = "shared with the example `headless`")]
 mod mesh;
