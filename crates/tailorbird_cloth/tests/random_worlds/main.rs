@@ -35,7 +35,6 @@
 //! The first world that fails is shrunk, to one that fails the same check.
 
 #![cfg(test)]
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod checks;
 mod film;
