@@ -31,6 +31,10 @@ pub(crate) struct Effort {
     pub recovers: bool,
     /// Whether what touches it has drawn an edge far out.
     pub drawn_out: bool,
+    /// For how long what holds and touches it has stood still \[s\].
+    lull: f32,
+    /// How many particles are held, and how many colliders touch it.
+    around: [usize; 2],
 }
 
 /// Edges that are longer than at rest by more than this, and than the material lets them be, are strained [-].
@@ -44,6 +48,9 @@ const STILL_STRAINED: f32 = 0.01;
 
 /// And one of whose edges any is longer than this many times its length [-].
 const TORN: f32 = 8.0;
+
+/// And one of whose edges any is longer than this many times its length, where it is so for as long as others; and until none is any more [-].
+const LONG: [f32; 2] = [2.0, 1.5];
 
 /// An edge is drawn far out that is longer than so many times its length, and than this part of what the cloth is large [-].
 const DRAWN_OUT: Longest = Longest {
@@ -67,6 +74,15 @@ const RATE: f32 = 8.0;
 /// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
 const CALMED: f32 = 3.0;
 
+/// What holds and touches a cloth stands still where it is slower than this [m/s].
+const STILL: f32 = 0.05;
+
+/// Where it has stood still for this long \[s\], what is strained moves by half as much after each half of that,
+const LULL: f32 = 0.5;
+
+/// but at least by this part [-].
+const LEAST: f32 = 0.02;
+
 impl Effort {
     /// Which part of the edges is strained and stays so [-].
     pub fn unmet(self) -> f32 {
@@ -78,12 +94,12 @@ impl Effort {
         self.strained = strained;
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
-        let most = if self.recovers {
-            STILL_STRAINED
+        let (most, long) = if self.recovers {
+            (STILL_STRAINED, LONG[1])
         } else {
-            STRAINED
+            (STRAINED, LONG[0])
         };
-        self.steps = if strained > most || torn {
+        self.steps = if strained > most || longest.times > long {
             self.steps + 1
         } else {
             0
@@ -94,6 +110,24 @@ impl Effort {
             (false, false) => MOMENTS[2],
         };
         self.recovers = self.steps >= moment;
+    }
+}
+
+impl Effort {
+    /// What holds and touches the cloth moves at this speed [m/s].
+    fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
+        if speed > STILL || around != self.around {
+            self.lull = 0.0;
+        } else {
+            self.lull += seconds;
+        }
+        self.around = around;
+    }
+
+    /// How fast what is strained moves by itself at most [m/s].
+    fn speed(self) -> f32 {
+        let halvings = (self.lull - LULL).max(0.0) / (0.5 * LULL);
+        SPEED * (-halvings).exp2().max(LEAST)
     }
 }
 
@@ -112,35 +146,44 @@ struct Led {
     way: Vec3,
     /// How far what holds or touches it moved \[m\].
     reach: f32,
+    /// The same, of what moved farthest of all that holds it \[m\].
+    farthest: f32,
     /// How far what holds it is apart \[m\].
     apart: f32,
+    /// How many particles are held.
+    held: usize,
 }
 
 impl ClothParticles {
-    fn led(&mut self) -> Led {
+    fn led(&mut self, out: f32) -> Led {
         let mut scratch = std::mem::take(&mut self.lambda);
-        let led = self.led_with(&mut scratch);
+        let led = self.led_with(out, &mut scratch);
         self.lambda = scratch;
         led
     }
 
-    fn led_with(&self, lengths: &mut Vec<f32>) -> Led {
+    fn led_with(&self, out: f32, lengths: &mut Vec<f32>) -> Led {
         let held = self.inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0);
         let ways =
             (held.clone()).map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
-        let touched = if self.contacts.any {
-            self.contacts.depth.iter().copied().fold(0.0, f32::max)
+        lengths.clear();
+        lengths.extend(ways.clone().map(Vec3::length));
+        let farthest = lengths.iter().copied().fold(0.0, f32::max);
+        // What is inside of something is pushed out of it.
+        let swept = if self.contacts.any {
+            self.contacts.swept + out
         } else {
             0.0
         };
-        lengths.clear();
-        lengths.extend(ways.clone().map(Vec3::length));
         let Some(middle) = lengths.len().checked_sub(1).map(|last| last / 2) else {
+            let whole = RigidMotion::of_all(&self.mass, &self.position, &self.previous_position);
             return Led {
-                way: RigidMotion::of_all(&self.mass, &self.position, &self.previous_position)
-                    .displacement,
-                reach: touched,
+                way: whole.displacement,
+                // The ground stops what falls.
+                reach: whole.displacement.length() + swept,
+                farthest: swept,
                 apart: 0.0,
+                held: 0,
             };
         };
         let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
@@ -151,39 +194,50 @@ impl ClothParticles {
         });
         Led {
             way: sum / f32::max(count, 1.0),
-            reach: middle.max(touched),
+            reach: middle.max(swept),
+            farthest: farthest.max(swept),
             apart: extent(held.map(|(i, _)| self.position.get(i))),
+            held: lengths.len(),
         }
     }
 
-    /// Slows what is strained, as seen from what holds it, during a substep.
-    pub(crate) fn calm_strained(&mut self, seconds: f32) {
+    /// Slows what is strained, as seen from what holds it, during a substep. `out` is how far colliders push \[m\].
+    pub(crate) fn calm_strained(&mut self, seconds: f32, out: f32) {
         if !self.effort.recovers {
             return;
         }
-        let Led { way, reach, .. } = self.led();
+        let Led { way, reach, .. } = self.led(out);
+        let most = self.effort.speed() * seconds + reach;
         let part = 1.0 - (-CALMED * seconds).exp();
         for (i, w) in self.inv_mass.iter().enumerate() {
             if *w > 0.0 {
                 let before = self.previous_position.get(i);
                 let moved = self.position.get(i) - before - way;
-                let kept = ((1.0 - part) * moved).clamp_length_max(SPEED * seconds + reach);
+                let kept = ((1.0 - part) * moved).clamp_length_max(most);
                 self.previous_position.set(i, before + moved - kept);
             }
         }
     }
 
-    /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `size` is how large the cloth is \[m\].
-    pub(crate) fn slow_strained(&mut self, seconds: f32, size: f32) {
+    /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `out` is how far colliders push, and `size`
+    /// how large the cloth is \[m\].
+    pub(crate) fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
         if !self.effort.recovers {
             return;
         }
-        let Led { way, reach, apart } = self.led();
-        let too_far = extent(self.previous_position.iter()) - f32::max(FAR * size, apart + size);
-        let most = (2.0 * SPEED + RATE * too_far.max(0.0)) * seconds + reach;
+        let led = self.led(out);
+        let around = [led.held, self.contacts.touched];
+        self.effort
+            .pass(seconds, (led.farthest - out).max(0.0) / seconds, around);
+        let mut speed = 2.0 * self.effort.speed();
+        if !self.contacts.any {
+            let far = f32::max(FAR * size, led.apart + size);
+            speed += RATE * (extent(self.previous_position.iter()) - far).max(0.0);
+        }
+        let most = speed * seconds + led.reach;
         for (i, w) in self.inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let start = self.previous_position.get(i) + way;
+                let start = self.previous_position.get(i) + led.way;
                 let moved = self.position.get(i) - start;
                 if moved.length_squared() > most * most {
                     self.position.set(i, start + moved.clamp_length_max(most));

@@ -204,7 +204,7 @@ impl MovingCollider {
         };
         let particles = &mut *cloth.particles;
         let len = particles.len();
-        let mut start = 0;
+        let (mut start, mut touches) = (0, false);
         while let Some(range) = around.next(&self.solid, way, margin, start, len) {
             start = range.end;
             self.prepare(&motion, margin, particles, around, substep, range.clone());
@@ -220,11 +220,18 @@ impl MovingCollider {
                 if particles.effort.drawn_out && far > FAST * substep.seconds {
                     around.passing.push(self.key());
                 }
-                particles.contacts.any |= phase == Phase::Approach;
+                touches = true;
+                if phase == Phase::Approach {
+                    let contacts = &mut particles.contacts;
+                    contacts.any = true;
+                    // What turns sweeps along as it does a metre from its axis.
+                    contacts.swept = contacts.swept.max(far + turn.length());
+                }
                 let points = [&particles.position, &particles.previous_position];
                 around.update(substep.level, points, range);
             }
         }
+        particles.contacts.touched += usize::from(touches && phase == Phase::Approach);
         particles.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some(held) = particles.grabbed {
             self.collide_held(held.particle as usize, &motion, margin, particles, around);

@@ -148,7 +148,7 @@ pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
     let (topology, material) = (cloth.topology, cloth.material);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
-    particles.calm_strained(seconds);
+    particles.calm_strained(seconds, substep.out());
     let verlet = Verlet {
         seconds,
         seconds_before: particles.substep_seconds,
@@ -223,7 +223,7 @@ pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
                 pass.solve(cloth.tethers, &mut cloth.particles);
             }
             let size = chains::Pass::of(substep, topology, material, 0).size();
-            cloth.particles.slow_strained(substep.seconds, size);
+            (cloth.particles).slow_strained(substep.seconds, [substep.out(), size]);
         }
         ClothSolver::GaussSeidel => {
             classic::solve(substep, topology, material, &mut cloth.particles);

@@ -66,6 +66,10 @@ pub(crate) struct Contacts {
     pub any: bool,
     /// Whether any was inside a collider that it did not enter by its own motion, in this step.
     pub overlaps: bool,
+    /// How far what the particles touch has moved since the start of the substep \[m\].
+    pub swept: f32,
+    /// How many colliders they touch.
+    pub touched: usize,
     /// What is known of the colliders around.
     pub around: Around,
 }
@@ -82,12 +86,13 @@ impl Contacts {
         ] {
             values.clear();
         }
-        self.any = false;
+        (self.any, self.swept, self.touched) = (false, 0.0, 0);
         self.around.couplings.clear();
     }
 
     /// Forgets all contacts of `len` particles.
     pub fn reset(&mut self, len: usize) {
+        (self.swept, self.touched) = (0.0, 0);
         if !self.any && self.depth.len() == len {
             return;
         }
