@@ -120,8 +120,8 @@ fn flown_through(substeps: u32, speed: f32, radius: f32) -> f32 {
     });
     sim.add_systems(ClothSubstep, chase.after(ClothSubstepSystems::Collide));
     // The first step knows no motion yet.
-    // Until it is 0.9 m beyond: what it has drawn out to the size of the cloth, it goes through.
-    let steps = (2.4 / speed * HZ as f32) as usize;
+    // Until it is 0.4 m beyond: what it has drawn out to a quarter of the cloth, it goes through.
+    let steps = (1.9 / speed * HZ as f32) as usize;
     for k in 1..=steps {
         let now = start + velocity * (k as f32 * DT);
         sim.edit::<Transform>(sphere, |t| t.translation = now);

@@ -4,7 +4,7 @@
 //! than the fabric lets them be, its lines give way (`solver/give.rs`), and what moves by their pull moves slowly, as seen from what holds
 //! it, so that stretch comes back without becoming speed.
 
-use bevy_math::Vec3;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 
 use crate::{
@@ -31,10 +31,14 @@ pub(crate) struct Effort {
     pub recovers: bool,
     /// Whether what touches it has drawn an edge far out.
     pub drawn_out: bool,
-    /// For how long what holds and touches it has stood still \[s\].
+    /// How fast what else drives it may make it in this step: air, forces, its own frame [m/s].
+    pub driven: f32,
+    /// For how long what holds, touches and drives it has stood still \[s\].
     lull: f32,
     /// How many particles are held, and how many colliders touch it.
     around: [usize; 2],
+    /// The least that was seen of the part that is strained and of the longest edge [-], since the lull began.
+    least: [f32; 2],
 }
 
 /// Edges that are longer than at rest by more than this, and than the material lets them be, are strained [-].
@@ -51,6 +55,9 @@ const TORN: f32 = 8.0;
 
 /// And one of whose edges any is longer than this many times its length, where it is so for as long as others; and until none is any more [-].
 const LONG: [f32; 2] = [2.0, 1.5];
+
+/// Air, forces and a frame that are faster than this stretch cloth by themselves [m/s].
+const STORM: f32 = 5.0;
 
 /// An edge is drawn far out that is longer than so many times its length, and than this part of what the cloth is large [-].
 const DRAWN_OUT: Longest = Longest {
@@ -74,11 +81,14 @@ const RATE: f32 = 8.0;
 /// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
 const CALMED: f32 = 3.0;
 
-/// What holds and touches a cloth stands still where it is slower than this [m/s].
+/// What holds, touches and drives a cloth stands still where it is slower than this [m/s].
 const STILL: f32 = 0.05;
 
 /// Where it has stood still for this long \[s\], what is strained moves by half as much after each half of that,
 const LULL: f32 = 0.5;
+
+/// as long as strain does not fall below this part of what it was [-],
+const BETTER: f32 = 0.98;
 
 /// but at least by this part [-].
 const LEAST: f32 = 0.02;
@@ -92,6 +102,9 @@ impl Effort {
     /// Sees at the end of a step which part of the edges is strained, and how long the longest of those is.
     pub fn see(&mut self, strained: f32, longest: Longest, contacts: &Contacts) {
         self.strained = strained;
+        // What a storm stretches has not been asked for what it has not got.
+        let blown = self.driven > STORM;
+        self.driven = 0.0;
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
         let (most, long) = if self.recovers {
@@ -99,7 +112,7 @@ impl Effort {
         } else {
             (STRAINED, LONG[0])
         };
-        self.steps = if strained > most || longest.times > long {
+        self.steps = if !blown && (strained > most || longest.times > long) || torn {
             self.steps + 1
         } else {
             0
@@ -110,11 +123,26 @@ impl Effort {
             (false, false) => MOMENTS[2],
         };
         self.recovers = self.steps >= moment;
+        let now = [strained, longest.times];
+        if self.lull == 0.0 {
+            self.least = now;
+        }
+        // What comes back is not held up.
+        if (0..2).any(|k| now[k] < BETTER * self.least[k]) {
+            self.lull = 0.0;
+        }
     }
 }
 
 impl Effort {
-    /// What holds and touches the cloth moves at this speed [m/s].
+    /// Its frame goes this way in so many seconds. What turns drives along as it does a metre from its axis.
+    pub fn carried(&mut self, [start, end]: [Isometry3d; 2], seconds: f32) {
+        let turned = start.rotation.angle_between(end.rotation);
+        let way = start.translation.distance(end.translation);
+        self.driven += (way + turned) / seconds;
+    }
+
+    /// What holds, touches and drives the cloth moves at this speed [m/s].
     fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
         if speed > STILL || around != self.around {
             self.lull = 0.0;
@@ -207,7 +235,7 @@ impl ClothParticles {
             return;
         }
         let Led { way, reach, .. } = self.led(out);
-        let most = self.effort.speed() * seconds + reach;
+        let most = (self.effort.speed() + self.effort.driven) * seconds + reach;
         let part = 1.0 - (-CALMED * seconds).exp();
         for (i, w) in self.inv_mass.iter().enumerate() {
             if *w > 0.0 {
@@ -227,9 +255,10 @@ impl ClothParticles {
         }
         let led = self.led(out);
         let around = [led.held, self.contacts.touched];
-        self.effort
-            .pass(seconds, (led.farthest - out).max(0.0) / seconds, around);
-        let mut speed = 2.0 * self.effort.speed();
+        let driven = self.effort.driven;
+        let fastest = driven.max((led.farthest - out).max(0.0) / seconds);
+        self.effort.pass(seconds, fastest, around);
+        let mut speed = 2.0 * self.effort.speed() + driven;
         if !self.contacts.any {
             let far = f32::max(FAR * size, led.apart + size);
             speed += RATE * (extent(self.previous_position.iter()) - far).max(0.0);

@@ -104,6 +104,7 @@ pub fn apply_forces(
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, None);
             continue;
         }
+        particles.effort.driven = f32::INFINITY;
         let mut errors = Vec::new();
         let mut check = |field: &str, particle: u32, vector: Vec3, len: usize| {
             let error = ClothErrorKind::vector(field, vector).or_else(|| {

@@ -361,6 +361,12 @@ impl ClothFrame {
         }
         let (_, fraction) = substep.fractions();
         let way = Vec3::from(self.end.translation - self.start.translation);
+        if substep.index == 0 {
+            let ends = [self.start, self.end];
+            particles
+                .effort
+                .carried(ends, substep.seconds * substep.count as f32);
+        }
         let (offset, to) = if substep.left() == 1 {
             (way, self.end)
         } else {

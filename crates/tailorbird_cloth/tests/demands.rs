@@ -64,8 +64,8 @@ fn posts_too_far_apart_stretch_a_sheet_evenly() {
     for mesh in MESHES {
         for apart in [0.02, 0.05, 0.1, 0.2] {
             let bounds = [
-                ("speed_max", of(mesh, [0.05, 1.0])),
-                ("stretch_max", of(mesh, [apart + 0.05, apart + 0.9])),
+                ("speed_max", of(mesh, [0.05, 0.3])),
+                ("stretch_max", of(mesh, [apart + 0.05, apart + 1.2])),
                 ("speed_peak", 6.0),
             ];
             for size in SIZES {
@@ -89,7 +89,7 @@ fn a_post_that_is_put_back_throws_nothing() {
         for size in SIZES {
             for apart in [0.02, 0.05, 0.1, 0.2] {
                 let bounds = [
-                    ("speed_peak", of(mesh, [6.0, 10.0])),
+                    ("speed_peak", of(mesh, [4.0, 10.0])),
                     ("speed_max", 0.3),
                     ("stretch_max", of(mesh, [0.01, 0.2])),
                 ];
@@ -108,7 +108,7 @@ fn a_curtain_with_a_body_in_it_lies_still() {
         for size in SIZES {
             for body in ["ball", "capsule", "box"] {
                 let scene = format!("impaled --mesh {mesh} --size {size} --body {body}");
-                holds(&scene, &[("speed_max", 0.6), ("speed_peak", 25.0)]);
+                holds(&scene, &[("speed_max", 0.3), ("speed_peak", 25.0)]);
             }
         }
     }
@@ -136,8 +136,8 @@ fn a_ball_that_is_pushed_into_a_net_leaves_it_whole() {
             let bounds = [
                 ("speed_max", 0.1),
                 ("stretch_max", of(mesh, [0.01, 0.25])),
-                ("speed_peak", of(mesh, [5.0, 12.0])),
-                ("stretch_peak", of(mesh, [2.0, 6.0])),
+                ("speed_peak", of(mesh, [8.0, 12.0])),
+                ("stretch_peak", of(mesh, [2.0, 4.0])),
             ];
             holds(&format!("net --mesh {mesh} --size {size}"), &bounds);
         }
@@ -166,7 +166,11 @@ fn what_overlaps_comes_out_slowly() {
                 let scene =
                     format!("overlap --depth {depth} --body {body} --mesh {mesh} --size 33");
                 // What falls off the body is as fast as that.
-                holds(&scene, &[("speed_peak", 12.0), ("stretch_max", 0.5)]);
+                // An irregular mesh may hang on a corner of the box for some seconds.
+                holds(
+                    &scene,
+                    &[("speed_peak", 12.0), ("stretch_max", of(mesh, [0.5, 3.0]))],
+                );
             }
             let ground = format!("overlap --depth {depth} --body ground --mesh {mesh} --size 33");
             holds(&ground, &[("speed_peak", 1.1), ("speed_max", 0.01)]);
@@ -178,9 +182,10 @@ fn what_overlaps_comes_out_slowly() {
 fn a_ball_that_flies_through_leaves_nothing_behind() {
     for mesh in MESHES {
         for size in SIZES {
-            for speed in [20, 40] {
+            for speed in [5, 20, 40] {
                 let scene = format!("ball --speed {speed} --mesh {mesh} --size {size}");
-                holds(&scene, &[("stretch_p99", of(mesh, [0.1, 1.5]))]);
+                let bounds = [("stretch_p99", of(mesh, [0.05, 0.2])), ("stretch_max", 1.0)];
+                holds(&scene, &bounds);
             }
         }
     }
@@ -208,6 +213,22 @@ fn what_games_do_every_day_is_not_felt() {
                 let bounds = [("speed_max", 0.05), ("stretch_peak", 0.05)];
                 holds(&format!("{scene} --mesh {mesh} --size {size}"), &bounds);
             }
+        }
+    }
+}
+
+/// What is strained moves slowly; what a storm stretches does not.
+#[test]
+fn a_flag_in_a_storm_flaps() {
+    for mesh in MESHES {
+        for size in [32, 64] {
+            let scene = format!("flag --wind 19,0,6 --steps 420 --mesh {mesh} --size {size}");
+            let report = report(&format!("--scene {scene}"));
+            let speed = report["speed_max"].as_f64();
+            assert!(
+                speed.is_some_and(|v| (5.0..60.0).contains(&v)),
+                "{scene}: {speed:?}"
+            );
         }
     }
 }

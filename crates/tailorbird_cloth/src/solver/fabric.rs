@@ -14,6 +14,9 @@ use crate::{
     topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
 
+/// How many times a substep solves each constraint of a mesh; so much softer each has to be.
+const TIMES: f32 = 2.0;
+
 impl Pass<'_> {
     /// Shear, the chains of all passes, shear, the chains in the other order.
     ///
@@ -28,7 +31,7 @@ impl Pass<'_> {
     }
 
     fn solve_shear(&self, fabric: &Fabric, particles: &mut ClothParticles) {
-        let alpha_tilde = self.alpha_tilde(self.material.shear_compliance);
+        let alpha_tilde = TIMES * self.alpha_tilde(self.material.shear_compliance);
         with_packed(&mut particles.position, &particles.inv_mass, |all| {
             mesh::solve_shear(fabric.shear(), alpha_tilde, all);
         });
@@ -64,7 +67,7 @@ impl Pass<'_> {
                 EdgeFamily::Warp => material.warp_compliance,
                 EdgeFamily::Weft | EdgeFamily::Shear => material.weft_compliance,
             };
-            let stretch = self.alpha_tilde(compliance);
+            let stretch = TIMES * self.alpha_tilde(compliance);
             mesh::solve_chains(self.level, mesh, stretch, passes[k].batches.clone());
         }
     }

@@ -246,6 +246,7 @@ impl BlowingWind {
         let mut velocity = Vec3::ZERO;
         let mut varies = false;
         for (source, whole) in self.reaching(ball) {
+            cloth.particles.effort.driven += source.velocity.length() + source.turbulence.speed;
             if whole && !source.turbulence.is_some() {
                 velocity += source.velocity;
             } else {
