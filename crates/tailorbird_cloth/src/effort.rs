@@ -37,7 +37,7 @@ pub(crate) struct Effort {
     lull: f32,
     /// How many particles are held, and how many colliders touch it.
     around: [usize; 2],
-    /// The least that was seen of the part that is strained and of the longest edge [-], since the lull began.
+    /// The least that was seen of the part that is strained and of the longest edge [-], since anything else moved.
     least: [f32; 2],
 }
 
@@ -123,13 +123,14 @@ impl Effort {
             (false, false) => MOMENTS[2],
         };
         self.recovers = self.steps >= moment;
-        let now = [strained, longest.times];
-        if self.lull == 0.0 {
-            self.least = now;
+        if !self.recovers {
+            (self.lull, self.least) = (0.0, [f32::INFINITY; 2]);
         }
-        // What comes back is not held up.
-        if (0..2).any(|k| now[k] < BETTER * self.least[k]) {
-            self.lull = 0.0;
+        for (least, now) in self.least.iter_mut().zip([strained, longest.times]) {
+            // What comes back is not held up.
+            if now < BETTER * *least {
+                (*least, self.lull) = (now, 0.0);
+            }
         }
     }
 }
@@ -145,7 +146,7 @@ impl Effort {
     /// What holds, touches and drives the cloth moves at this speed [m/s].
     fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
         if speed > STILL || around != self.around {
-            self.lull = 0.0;
+            (self.lull, self.least) = (0.0, [f32::INFINITY; 2]);
         } else {
             self.lull += seconds;
         }
