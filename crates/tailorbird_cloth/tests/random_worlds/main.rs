@@ -24,6 +24,8 @@
 //!      than 0.1 m/s, as the median of that half second, so that a single blow does not count. Where the cloth as a whole is faster than
 //!      0.2 m/s (root of the mean square; in a vacuum as seen from its middle), by less than half of that.
 //!
+//! 2 and 3 are asked where no two holds are more than 10 times as far apart as in the flat sheet.
+//!
 //! So a sheet that swings or flutters as a whole passes, and a particle that shakes in one that hangs still does not.
 //!
 //! Worlds are numbered, and a number is always the same world, as long as the strategies in `world.rs` are the same.
