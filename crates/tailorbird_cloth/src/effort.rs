@@ -13,13 +13,6 @@ use crate::{
     topology::Topology,
 };
 
-/// The longest side of a box around points \[m\]; 0 where there is none.
-fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
-    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (low, high) = points.fold(none, |(low, high), p| (low.min(p), high.max(p)));
-    (high - low).max_element().max(0.0)
-}
-
 /// How it stands with what a cloth is asked for, as was seen at the end of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub(crate) struct Effort {
@@ -47,14 +40,15 @@ pub(crate) const STRAIN: f32 = 0.03;
 /// A cloth of whose edges more than this part is strained is asked for more than the fabric has [-].
 const STRAINED: f32 = 0.05;
 
-/// And stays so until fewer are than this part [-].
+/// What is strained stays so until fewer of its edges are than this part [-].
 const STILL_STRAINED: f32 = 0.01;
 
-/// And one of whose edges any is longer than this many times its length [-].
-const TORN: f32 = 8.0;
-
-/// And one of whose edges any is longer than this many times its length, where it is so for as long as others; and until none is any more [-].
+/// A single edge that is longer than the first of these times its length counts as well, and what is strained stays so until none is longer
+/// than the second [-].
 const LONG: [f32; 2] = [2.0, 1.5];
+
+/// A single edge that is longer than this many times its length counts at once [-].
+const TORN: f32 = 8.0;
 
 /// Air, forces and a frame that are faster than this stretch cloth by themselves [m/s].
 const STORM: f32 = 5.0;
@@ -75,7 +69,7 @@ const SPEED: f32 = 1.0;
 /// What is farther apart than the cloth is large, times this, comes back faster [-]: no hand or post draws it out so far.
 const FAR: f32 = 1.5;
 
-/// And at this rate [1/s].
+/// The rate at which what is farther apart than that comes back [1/s].
 const RATE: f32 = 8.0;
 
 /// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
@@ -84,13 +78,13 @@ const CALMED: f32 = 3.0;
 /// What holds, touches and drives a cloth stands still where it is slower than this [m/s].
 const STILL: f32 = 0.05;
 
-/// Where it has stood still for this long \[s\], what is strained moves by half as much after each half of that,
+/// Where all of that has stood still for this long \[s\], what is strained moves by half as much after each half of this time.
 const LULL: f32 = 0.5;
 
-/// as long as strain does not fall below this part of what it was [-],
+/// Strain that falls below this part of what it was comes back, and is not slowed as in a lull [-].
 const BETTER: f32 = 0.98;
 
-/// but at least by this part [-].
+/// The least part of its speed that is left of what is strained in a lull [-].
 const LEAST: f32 = 0.02;
 
 impl Effort {
@@ -133,9 +127,7 @@ impl Effort {
             }
         }
     }
-}
 
-impl Effort {
     /// Its frame goes this way in so many seconds. What turns drives along as it does a metre from its axis.
     pub fn carried(&mut self, [start, end]: [Isometry3d; 2], seconds: f32) {
         let turned = start.rotation.angle_between(end.rotation);
@@ -167,6 +159,13 @@ pub(crate) struct Longest {
     pub times: f32,
     /// As a part of what the cloth is large [-].
     pub part: f32,
+}
+
+/// The longest side of a box around points \[m\]; 0 where there is none.
+fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
+    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = points.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).max_element().max(0.0)
 }
 
 /// What the motion of a strained cloth is seen from.

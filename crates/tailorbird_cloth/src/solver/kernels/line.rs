@@ -285,10 +285,9 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
 ///
-/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of the particles at its ends
-/// half ([`Whole::bears`]). Since |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), p being 1/2, and 1 at an end, and a particle has two edges of its
-/// line, and one at an end, no wave across the line is then pulled back by more than κ of itself. Returns the edges among which there is
-/// tension beyond that, which [`share`] wants in place of the multipliers.
+/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of its ends half ([`Whole::bears`]):
+/// with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave across the line is pulled back by more
+/// than κ of itself. Returns the edges among which there is tension beyond that, which [`share`] wants in place of the multipliers.
 #[inline(always)]
 fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     simd: S,
@@ -300,7 +299,6 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
     let half = S::f32s::splat(simd, 0.5);
-    let least_l2 = S::f32s::splat(simd, NO_MASS);
     let [borne, pulls, pushes] =
         [LARGEST_KAPPA, lines.give.pull, lines.give.push].map(|kappa| bears * kappa);
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
@@ -320,8 +318,8 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
         if CONTACT != PRESSED && mu.simd_lt(zero - borne).any_true() {
             let beyond = (zero - mu - borne).max(zero);
             // It will act on what is as long as at rest.
-            let inv_l2 = S::f32s::splat(simd, 1.0) / edges.at(simd, e).l2.max(least_l2);
-            let longer = half + d.dot(d) * (half * inv_l2);
+            let l2 = edges.at(simd, e).l2.max(S::f32s::splat(simd, NO_MASS));
+            let longer = half + d.dot(d) * (half * (S::f32s::splat(simd, 1.0) / l2));
             // None in between has any.
             for k in e + 1..shared.start {
                 factors.store::<S>((2 * k + 1) * lanes, zero);
