@@ -132,11 +132,14 @@ fn settings_come_back() {
         comes_back(&ClothSettings {
             gravity: Vec3::new(0.1, -1.62, 0.0),
             substeps: Some(12),
+            most_substeps: 40,
             iterations: 3,
             instruction_set,
             time_scale: 0.5,
             paused: true,
             pending_steps: 2,
+            overlap_speed: 0.3,
+            teleport_speed: 12.0,
         });
     }
     assert_eq!(read::<ClothSettings>("()"), ClothSettings::default());
