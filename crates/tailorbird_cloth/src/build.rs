@@ -179,6 +179,7 @@ impl ClothParticles {
             pin.target *= ratio;
         }
         self.calm.clear();
+        self.grant.rescale();
         true
     }
 }

@@ -20,13 +20,19 @@ pub(crate) struct Effort {
     pub strained: f32,
     /// For how many steps it has been strained.
     steps: u32,
-    /// Whether the fabric gives way, and moves slowly.
+    /// Whether it is asked for more than the fabric has.
+    pub is_asked: bool,
+    /// Whether the fabric gives way, and moves slowly: it is, or has not recovered from it.
     pub recovers: bool,
+    /// For how many steps it goes on to settle after it has recovered.
+    settles: u32,
     /// Whether what touches it has drawn an edge far out.
     pub drawn_out: bool,
     /// How fast what else drives it may make it in this step: air, forces, its own frame [m/s].
     pub driven: f32,
     /// For how long what holds, touches and drives it has stood still \[s\].
+    still: f32,
+    /// The same, and since strain last came back \[s\].
     lull: f32,
     /// How many particles are held, and how many colliders touch it.
     around: [usize; 2],
@@ -44,8 +50,8 @@ const STRAINED: f32 = 0.05;
 const STILL_STRAINED: f32 = 0.01;
 
 /// A single edge that is longer than the first of these times its length counts as well, and what is strained stays so until none is longer
-/// than the second [-].
-const LONG: [f32; 2] = [2.0, 1.5];
+/// than the second [-]: anywhere, and on a mesh that something touches, whose edges share less evenly what they bear at once.
+const LONG: [[f32; 2]; 2] = [[2.0, 1.5], [1.35, 1.2]];
 
 /// A single edge that is longer than this many times its length counts at once [-].
 const TORN: f32 = 8.0;
@@ -56,7 +62,7 @@ const STORM: f32 = 5.0;
 /// An edge is drawn far out that is longer than so many times its length, and than this part of what the cloth is large [-].
 const DRAWN_OUT: Longest = Longest {
     times: 4.0,
-    part: 0.25,
+    part: 0.05,
 };
 
 /// What is jerked, or hit, is strained for a moment, and rightly so: it has to be strained for so many steps before it gives way, where
@@ -78,6 +84,12 @@ const CALMED: f32 = 3.0;
 /// What holds, touches and drives a cloth stands still where it is slower than this [m/s].
 const STILL: f32 = 0.05;
 
+/// What has recovered and touches nothing settles for so many steps.
+const SETTLES: u32 = 60;
+
+/// What has been still for this long stands \[s\].
+const STANDS: f32 = 0.75;
+
 /// Where all of that has stood still for this long \[s\], what is strained moves by half as much after each half of this time.
 const LULL: f32 = 0.5;
 
@@ -93,18 +105,51 @@ impl Effort {
         if self.recovers { self.strained } else { 0.0 }
     }
 
-    /// Sees at the end of a step which part of the edges is strained, and how long the longest of those is.
-    pub fn see(&mut self, strained: f32, longest: Longest, contacts: &Contacts) {
+    /// Whether a mesh is asked for more than it has.
+    #[cfg(test)]
+    pub fn asking(is_asked: bool) -> Self {
+        Self {
+            steps: u32::from(is_asked),
+            is_asked,
+            ..Self::default()
+        }
+    }
+
+    /// Whether it is strained now.
+    pub fn is_strained(self) -> bool {
+        self.steps > 0
+    }
+
+    /// Whether it recovers, or has just done so and touches nothing: what is farther from a pin than it reaches comes back slowly.
+    pub fn settles(self) -> bool {
+        self.settles > 0
+    }
+
+    /// Whether what is asked for stays the same.
+    pub fn stands(self) -> bool {
+        self.still > STANDS
+    }
+
+    /// Sees at the end of a step which part of the edges is strained, and how long the longest of those is. A mesh that has
+    /// been `granted` something recovers until that is taken back; a sheet is granted nothing.
+    pub fn see(
+        &mut self,
+        strained: f32,
+        longest: Longest,
+        contacts: &Contacts,
+        granted: Option<bool>,
+    ) {
         self.strained = strained;
         // What a storm stretches has not been asked for what it has not got.
         let blown = self.driven > STORM;
         self.driven = 0.0;
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
+        let long = LONG[usize::from(granted.is_some() && contacts.any)];
         let (most, long) = if self.recovers {
-            (STILL_STRAINED, LONG[1])
+            (STILL_STRAINED, long[1])
         } else {
-            (STRAINED, LONG[0])
+            (STRAINED, long[0])
         };
         self.steps = if !blown && (strained > most || longest.times > long) || torn {
             self.steps + 1
@@ -116,9 +161,17 @@ impl Effort {
             (false, true) => MOMENTS[1],
             (false, false) => MOMENTS[2],
         };
-        self.recovers = self.steps >= moment;
+        self.recovers = self.steps >= moment || granted == Some(true);
+        self.settles = if self.recovers {
+            SETTLES
+        } else if contacts.any {
+            0
+        } else {
+            self.settles.saturating_sub(1)
+        };
+        self.is_asked = self.recovers && !blown;
         if !self.recovers {
-            (self.lull, self.least) = (0.0, [f32::INFINITY; 2]);
+            (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
         }
         for (least, now) in self.least.iter_mut().zip([strained, longest.times]) {
             // What comes back is not held up.
@@ -138,8 +191,9 @@ impl Effort {
     /// What holds, touches and drives the cloth moves at this speed [m/s].
     fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
         if speed > STILL || around != self.around {
-            (self.lull, self.least) = (0.0, [f32::INFINITY; 2]);
+            (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
         } else {
+            self.still += seconds;
             self.lull += seconds;
         }
         self.around = around;

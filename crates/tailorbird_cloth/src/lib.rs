@@ -61,6 +61,7 @@ pub mod error;
 pub mod forces;
 pub mod frame;
 pub mod grab;
+mod grant;
 pub mod inertia;
 pub mod material;
 mod memory;

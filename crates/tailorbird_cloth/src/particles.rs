@@ -7,6 +7,7 @@ use bevy_reflect::prelude::*;
 use crate::{
     effort::Effort,
     frame::ClothFrame,
+    grant::Grant,
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -58,6 +59,9 @@ pub struct ClothParticles {
     pub(crate) contacts: Contacts,
     /// How it stands with what the cloth is asked for.
     pub(crate) effort: Effort,
+    /// How much longer than at rest the threads of a strained mesh may be.
+    #[reflect(ignore)]
+    pub(crate) grant: Grant,
     /// Mean places of runs of particles in the last while \[m\], in the cloth's frame.
     #[reflect(ignore)]
     pub(crate) calm: Vec<Vec3>,
@@ -152,6 +156,7 @@ impl ClothParticles {
             + heap(&self.pulled)
             + heap(&self.calm)
             + self.contacts.around.memory_bytes()
+            + self.grant.memory_bytes()
             + heap(&self.attached)
             + heap(&self.limited)
     }
@@ -354,6 +359,7 @@ impl ClothParticles {
         self.previous_position.copy_from(&self.step_position);
         self.lost_displacement.fill(Vec3::ZERO);
         self.acceleration.clear();
+        self.grant.clear();
     }
 
     /// Puts the particles where they are at rest, pinned ones where they are held, without velocity.

@@ -64,9 +64,9 @@ fn posts_too_far_apart_stretch_a_sheet_evenly() {
     for mesh in MESHES {
         for apart in [0.02, 0.05, 0.1, 0.2] {
             let bounds = [
-                ("speed_max", of(mesh, [0.05, 0.6])),
-                ("stretch_max", of(mesh, [apart + 0.05, apart + 1.2])),
-                ("speed_peak", 6.0),
+                ("speed_max", of(mesh, [0.1, 0.4])),
+                ("stretch_max", apart + of(mesh, [0.05, 0.25])),
+                ("speed_peak", 3.0),
             ];
             for size in SIZES {
                 holds(
@@ -77,6 +77,11 @@ fn posts_too_far_apart_stretch_a_sheet_evenly() {
             for fabric in FABRICS {
                 let scene =
                     format!("posts --apart {apart} --mesh {mesh} --size 33 --material {fabric}");
+                let mut bounds = bounds;
+                if fabric == "rubber" {
+                    // It is asked for nothing that it has not got.
+                    bounds[1].1 = apart + of(mesh, [0.05, 0.6]);
+                }
                 holds(&scene, &bounds);
             }
         }
@@ -89,9 +94,9 @@ fn a_post_that_is_put_back_throws_nothing() {
         for size in SIZES {
             for apart in [0.02, 0.05, 0.1, 0.2] {
                 let bounds = [
-                    ("speed_peak", of(mesh, [4.0, 10.0])),
-                    ("speed_max", 0.3),
-                    ("stretch_max", of(mesh, [0.01, 0.2])),
+                    ("speed_peak", of(mesh, [4.0, 9.0])),
+                    ("speed_max", of(mesh, [0.1, 0.8])),
+                    ("stretch_max", of(mesh, [0.01, 0.25])),
                 ];
                 holds(
                     &format!("put-back --apart {apart} --mesh {mesh} --size {size}"),
@@ -122,7 +127,7 @@ fn and_is_whole_when_the_body_has_gone() {
                 let scene = format!("impaled-gone --mesh {mesh} --size {size} --body {body}");
                 holds(
                     &scene,
-                    &[("stretch_max", of(mesh, [0.02, 0.06])), ("speed_max", 2.0)],
+                    &[("stretch_max", of(mesh, [0.02, 0.04])), ("speed_max", 2.0)],
                 );
             }
         }
@@ -134,10 +139,10 @@ fn a_ball_that_is_pushed_into_a_net_leaves_it_whole() {
     for mesh in MESHES {
         for size in SIZES {
             let bounds = [
-                ("speed_max", 0.1),
+                ("speed_max", of(mesh, [0.1, 0.5])),
                 ("stretch_max", of(mesh, [0.01, 0.25])),
-                ("speed_peak", of(mesh, [8.0, 12.0])),
-                ("stretch_peak", of(mesh, [2.0, 4.0])),
+                ("speed_peak", 5.0),
+                ("stretch_peak", of(mesh, [1.8, 1.5])),
             ];
             holds(&format!("net --mesh {mesh} --size {size}"), &bounds);
         }
@@ -184,7 +189,10 @@ fn a_ball_that_flies_through_leaves_nothing_behind() {
         for size in SIZES {
             for speed in [5, 20, 40] {
                 let scene = format!("ball --speed {speed} --mesh {mesh} --size {size}");
-                let bounds = [("stretch_p99", of(mesh, [0.05, 0.2])), ("stretch_max", 1.0)];
+                let bounds = [
+                    ("stretch_p99", of(mesh, [0.05, 0.3])),
+                    ("stretch_max", of(mesh, [0.5, 1.0])),
+                ];
                 holds(&scene, &bounds);
             }
         }

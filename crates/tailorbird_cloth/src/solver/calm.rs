@@ -22,6 +22,7 @@ pub(crate) fn calm(
     level: Level,
     topology: &Topology,
     allowed: f32,
+    seconds: f32,
     particles: &mut ClothParticles,
 ) {
     if particles.is_empty() || particles.len() != topology.particles() {
@@ -34,6 +35,7 @@ pub(crate) fn calm(
         mass,
         inv_mass,
         effort,
+        grant,
         contacts,
         ..
     } = particles;
@@ -47,7 +49,7 @@ pub(crate) fn calm(
                 times: survey.longest,
                 part: survey.longest / side,
             };
-            effort.see(survey.strained, longest, contacts);
+            effort.see(survey.strained, longest, contacts, None);
         } else {
             *effort = Effort::default();
         }
@@ -85,10 +87,11 @@ pub(crate) fn calm(
                 times: far.sqrt(),
                 part: farthest.sqrt() / fabric.size(),
             };
-            effort.see(part, longest, contacts);
+            effort.see(part, longest, contacts, Some(!grant.is_empty()));
         } else {
             *effort = Effort::default();
         }
+        grant.renew(fabric, position, seconds, *effort);
         if !squeezed {
             return;
         }

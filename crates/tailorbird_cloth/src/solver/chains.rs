@@ -137,7 +137,7 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
-            give: self.give(*effort, contacts.any),
+            give: self.give(*effort, 0.0, contacts.any),
         };
         (sheet, SharedPoints::new(previous_position))
     }
@@ -152,7 +152,7 @@ impl Pass<'_> {
         if particles.len() != topology.particles() || particles.is_empty() {
             return;
         }
-        let slack = self.slack();
+        let slack = self.slack() * (1.0 + particles.grant.largest());
         // A hand does not pull the cloth further from its pins than it reaches.
         if let Some(held) = particles.grabbed {
             let i = held.particle as usize;

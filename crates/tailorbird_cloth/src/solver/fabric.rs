@@ -32,8 +32,10 @@ impl Pass<'_> {
 
     fn solve_shear(&self, fabric: &Fabric, particles: &mut ClothParticles) {
         let alpha_tilde = TIMES * self.alpha_tilde(self.material.shear_compliance);
+        let springs = fabric.shear();
+        let lengths = particles.grant.springs(springs);
         with_packed(&mut particles.position, &particles.inv_mass, |all| {
-            mesh::solve_shear(fabric.shear(), alpha_tilde, all);
+            mesh::solve_shear(springs, lengths, alpha_tilde, all);
         });
     }
 
@@ -49,6 +51,7 @@ impl Pass<'_> {
             inv_mass,
             contacts,
             effort,
+            grant,
             ..
         } = particles;
         let mesh = Mesh {
@@ -59,7 +62,8 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
-            give: self.give(*effort, contacts.any),
+            rest_length: grant.chains(fabric.chains()),
+            give: self.give(*effort, grant.largest(), contacts.any),
         };
         let passes = &fabric.chains().passes;
         for k in order {

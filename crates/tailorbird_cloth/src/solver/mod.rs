@@ -42,8 +42,8 @@
 //!
 //! One pass over the constraints in each of several substeps: at equal cost that stretches less than many passes in few. The error falls
 //! with the square of the substep, the cost grows in proportion. What is calm needs the number that is chosen; a hard gust, a heavy body, a
-//! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). A hand and
-//! bodies that lie on the cloth raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
+//! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). What stretches
+//! a cloth, a hand and bodies that lie on it raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
 //!
 //! # How good it is
 //!
@@ -203,7 +203,9 @@ pub(crate) fn calm(substep: &Substep, cloth: &mut ClothStagesItem) {
     if solves && substep.left() == 1 {
         let pass = chains::Pass::of(substep, cloth.topology, cloth.material, 0);
         let longest = pass.slack() + effort::STRAIN;
-        calm::calm(substep.level, cloth.topology, longest, &mut cloth.particles);
+        let seconds = substep.seconds * substep.count as f32;
+        let (level, particles) = (substep.level, &mut *cloth.particles);
+        calm::calm(level, cloth.topology, longest, seconds, particles);
         cloth.particles.disturb(cloth.topology);
     }
 }

@@ -58,6 +58,8 @@ pub struct Chains {
     pub rest_length: Vec<f32>,
     /// For each slot the [`Weave::scale`] of that edge \[-\]; 0 where there is none.
     pub scale: Vec<f32>,
+    /// For each slot the [`Weave::along_warp`] of that edge \[-\]; 0 where there is none.
+    pub along_warp: Vec<f32>,
 }
 
 impl Chains {
@@ -104,14 +106,22 @@ impl Chains {
             + heap(&self.particle)
             + heap(&self.rest_length)
             + heap(&self.scale)
+            + heap(&self.along_warp)
     }
 
     /// The ends and rest lengths \[m\] of all edges.
     pub fn edges(&self) -> impl Iterator<Item = ([u32; 2], f32)> + '_ {
+        self.slots()
+            .map(|(slot, ends)| (ends, self.rest_length[slot]))
+    }
+
+    /// The slots that have an edge, with its ends.
+    pub fn slots(&self) -> impl Iterator<Item = (usize, [u32; 2])> + '_ {
         let next = self.particle.get(LANES..).unwrap_or_default();
         let ends = self.particle.iter().zip(next).zip(&self.rest_length);
-        ends.filter(|(_, length)| **length > 0.0)
-            .map(|((a, b), length)| ([*a, *b], *length))
+        ends.enumerate()
+            .filter(|(_, (_, length))| **length > 0.0)
+            .map(|(slot, ((a, b), _))| (slot, [*a, *b]))
     }
 
     fn push(
@@ -130,6 +140,7 @@ impl Chains {
             self.particle.resize(end, NONE);
             self.rest_length.resize(end, 0.0);
             self.scale.resize(end, 0.0);
+            self.along_warp.resize(end, 0.0);
             for (lane, &(chain, reversed)) in batch.lanes.iter().enumerate() {
                 for (k, (particle, edge)) in cover.links(chain, reversed).enumerate() {
                     let slot = start + k * LANES + lane;
@@ -138,6 +149,7 @@ impl Chains {
                         let [a, b] = [a, b].map(|i| rest_positions[i as usize]);
                         self.rest_length[slot] = a.distance(b);
                         self.scale[slot] = weave.scale[edge as usize];
+                        self.along_warp[slot] = weave.along_warp[edge as usize];
                     }
                 }
             }

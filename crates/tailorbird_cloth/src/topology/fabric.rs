@@ -45,6 +45,8 @@ pub struct Springs {
     pub rest_length: Vec<f32>,
     /// The compliance of a spring is that of the fabric for shear \[m/N\] times this [-].
     pub scale: Vec<f32>,
+    /// The square of the cosine of the angle to the warp [-].
+    pub along_warp: Vec<f32>,
     /// The springs of each batch.
     pub batches: Vec<Range<usize>>,
 }
@@ -146,15 +148,18 @@ impl Fabric {
 
 impl Springs {
     fn memory_bytes(&self) -> usize {
-        heap(&self.ends) + heap(&self.rest_length) + heap(&self.scale) + heap(&self.batches)
+        heap(&self.ends)
+            + heap(&self.rest_length)
+            + heap(&self.scale)
+            + heap(&self.along_warp)
+            + heap(&self.batches)
     }
 
     fn new(rest_positions: &[Vec3], weave: &Weave) -> Self {
-        let edges = weave.ends.iter().zip(&weave.family).zip(&weave.scale);
-        let (pairs, scales): (Vec<[u32; 2]>, Vec<f32>) = edges
-            .filter(|((_, family), _)| **family == EdgeFamily::Shear)
-            .map(|((ends, _), scale)| (*ends, *scale))
-            .unzip();
+        let edges: Vec<usize> = (0..weave.ends.len())
+            .filter(|edge| weave.family[*edge] == EdgeFamily::Shear)
+            .collect();
+        let pairs: Vec<[u32; 2]> = edges.iter().map(|edge| weave.ends[*edge]).collect();
         let mut springs = Self::default();
         for batch in color_in_blocks(&pairs, rest_positions.len()) {
             let start = springs.ends.len();
@@ -163,7 +168,9 @@ impl Springs {
                 let [a, b] = ends.map(|i| rest_positions[i as usize]);
                 springs.ends.push(ends);
                 springs.rest_length.push(a.distance(b));
-                springs.scale.push(DIAGONAL * scales[k as usize]);
+                let edge = edges[k as usize];
+                springs.scale.push(DIAGONAL * weave.scale[edge]);
+                springs.along_warp.push(weave.along_warp[edge]);
             }
             springs.batches.push(start..springs.ends.len());
         }

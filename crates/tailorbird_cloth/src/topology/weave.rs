@@ -54,6 +54,8 @@ pub struct Weave {
     /// L²/(A₁ + A₂) of each edge \[-\], with its length and the areas of its triangles. The compliance of its spring is
     /// that of the membrane \[m/N\] times this.
     pub scale: Vec<f32>,
+    /// The square of the cosine of the angle between each edge and the warp [-].
+    pub along_warp: Vec<f32>,
 }
 
 impl Weave {
@@ -102,6 +104,7 @@ impl Weave {
                 .sum();
             let leaning = surface.leaning(sides, &threads);
             weave.scale.push(a.distance_squared(b) / area);
+            weave.along_warp.push(0.5 + 0.5 * leaning.upright);
             weave.family.push(if leaning.alignment > ALIGNED {
                 leaning.family
             } else {
@@ -127,6 +130,7 @@ impl Weave {
         edges.sort_unstable();
         self.family = edges.iter().map(|e| self.family[e.1]).collect();
         self.scale = edges.iter().map(|e| self.scale[e.1]).collect();
+        self.along_warp = edges.iter().map(|e| self.along_warp[e.1]).collect();
         self.ends = edges.into_iter().map(|e| e.0).collect();
     }
 }
@@ -138,6 +142,8 @@ struct Leaning {
     alignment: f32,
     /// Which one that is.
     family: EdgeFamily,
+    /// The cosine of twice the angle to the warp.
+    upright: f32,
 }
 
 /// A step from one triangle to the next: the side that is left and the side that is entered.
@@ -353,6 +359,7 @@ impl Surface<'_> {
             } else {
                 EdgeFamily::Weft
             },
+            upright: (upright / sides.len() as f32).clamp(-1.0, 1.0),
         }
     }
 }

@@ -38,6 +38,8 @@ pub(crate) struct Mesh<'a> {
     pub normal: Option<SharedPoints<'a>>,
     /// Where what pushes particles along their normals is added up.
     pub pressed: Option<Shared<'a>>,
+    /// For each slot of the chains how long its edge is to be \[m\].
+    pub rest_length: &'a [f32],
     /// How far the fabric gives way.
     pub give: Give,
 }
@@ -55,7 +57,8 @@ impl Mesh<'_> {
             points(self.position)
                 && self.inv_mass.len() == n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n),
+                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.rest_length.len() == self.fabric.chains().particle.len(),
             "a mesh of {n} particles"
         );
     }
@@ -176,7 +179,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             }
         }
         let edges = MeshLines {
-            rest_length: &chains.rest_length[start..batch.slots.end],
+            rest_length: &mesh.rest_length[start..batch.slots.end],
             scale: &chains.scale[start..batch.slots.end],
             stretch,
             stride: LANES,
@@ -204,17 +207,18 @@ fn solve_batch<S: Simd, const BODIES: bool>(
     }
 }
 
-/// Projects the springs across the threads. `alpha_tilde` is that of a spring whose scale is 1 [1/kg].
+/// Projects the springs across the threads to these lengths \[m\]. `alpha_tilde` is that of a spring whose scale is 1 [1/kg].
 ///
 /// # Panics
 /// When a particle is not below the number of particles.
-pub(crate) fn solve_shear(springs: &Springs, alpha_tilde: f32, all: &mut [Packed]) {
+pub(crate) fn solve_shear(
+    springs: &Springs,
+    rest_length: &[f32],
+    alpha_tilde: f32,
+    all: &mut [Packed],
+) {
     let least = Vec4::splat(HEAVIEST);
-    let springs = springs
-        .ends
-        .iter()
-        .zip(&springs.rest_length)
-        .zip(&springs.scale);
+    let springs = springs.ends.iter().zip(rest_length).zip(&springs.scale);
     for ((ends, &length), &scale) in springs {
         let ends = ends.map(|i| i as usize);
         let [a, b] = ends.map(|i| Vec4::from_array(all[i]));

@@ -174,6 +174,7 @@ fn chains_of_a_mesh() {
                 inv_mass: Shared::new(&mut state.inv_mass),
                 normal: contact.then(|| SharedPoints::new(&mut state.normal)),
                 pressed: bodies.then(|| Shared::new(&mut state.pressed)),
+                rest_length: &fabric.chains().rest_length,
                 give: super::give(contact),
             };
             for pass in &fabric.chains().passes {
