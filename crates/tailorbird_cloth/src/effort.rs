@@ -34,6 +34,8 @@ pub(crate) struct Effort {
     still: f32,
     /// The same, and since strain last came back \[s\].
     lull: f32,
+    /// How many more times as many substeps it wants for a storm [-].
+    more: f32,
     /// How many particles are held, and how many colliders touch it.
     around: [usize; 2],
     /// The least that was seen of the part that is strained and of the longest edge [-], since anything else moved.
@@ -84,6 +86,14 @@ const CALMED: f32 = 3.0;
 /// What holds, touches and drives a cloth stands still where it is slower than this [m/s].
 const STILL: f32 = 0.05;
 
+/// A cloth of whose edges more than this part is too long, and which a storm drives, takes more substeps [-].
+const STRETCHED: f32 = 0.005;
+
+/// How many more times as many it takes at most, more in each step in which it is stretched, and fewer in each in which it is not [-].
+const MOST_MORE: f32 = 3.0;
+const RISE: f32 = 0.1;
+const FALL: f32 = 0.005;
+
 /// What has recovered and touches nothing settles for so many steps.
 const SETTLES: u32 = 60;
 
@@ -112,6 +122,20 @@ impl Effort {
             steps: u32::from(is_asked),
             is_asked,
             ..Self::default()
+        }
+    }
+
+    /// How many more times as many substeps as at rest it wants for a storm that stretches it [-].
+    pub fn more_substeps(self) -> f32 {
+        self.more
+    }
+
+    /// Which part of the edges is too long though nothing is asked that the fabric has not [-].
+    pub fn stretched(self) -> f32 {
+        if self.recovers || self.strained <= STRETCHED {
+            0.0
+        } else {
+            self.strained
         }
     }
 
@@ -170,6 +194,11 @@ impl Effort {
             self.settles.saturating_sub(1)
         };
         self.is_asked = self.recovers && !blown;
+        self.more = if blown && strained > STRETCHED && !self.recovers {
+            MOST_MORE.min(self.more + RISE)
+        } else {
+            (self.more - FALL).max(0.0)
+        };
         if !self.recovers {
             (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
         }

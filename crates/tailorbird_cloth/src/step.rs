@@ -35,6 +35,9 @@ pub struct ClothStep {
     pub(crate) gravity: Vec3,
     pub(crate) overlap_speed: f32,
     pub(crate) most_substeps: u32,
+    pub(crate) substep_budget: u32,
+    /// The part that cloths get of the substeps that they want in a storm.
+    pub(crate) granted_substeps: f32,
     pub(crate) elapsed: f64,
     pub(crate) steps: u64,
     pub(crate) running: bool,
@@ -53,6 +56,9 @@ impl Default for SimdLevel {
         Self(Level::new())
     }
 }
+
+/// As how many of a sheet a particle of a mesh counts, by the time it takes.
+const MESH: f32 = 8.0;
 
 /// From this many particles on (over all cloths) cloths are shared out to threads.
 ///
@@ -147,7 +153,9 @@ impl ClothStep {
     ) -> u32 {
         let automatic = || {
             let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
-            let loaded = (unloaded as f32 * self.loaded(particles)).ceil() as u32;
+            let stretched = 1.0 + particles.effort.more_substeps() * self.granted_substeps;
+            let times = self.loaded(particles).max(stretched);
+            let loaded = (unloaded as f32 * times).ceil() as u32;
             let held = if particles.grabbed.is_some() {
                 loaded.max(solver.substeps_in_hand(topology))
             } else {
@@ -241,6 +249,7 @@ pub fn begin_step(
     step.gravity = valid.gravity;
     step.overlap_speed = valid.overlap_speed;
     step.most_substeps = valid.most_substeps;
+    step.substep_budget = valid.substep_budget;
     step.running = step.seconds > 0.0 && (!settings.paused || single_step);
     step.steps += u64::from(step.running);
     step.whole = step.running && own.are_all(&schedules);
@@ -260,11 +269,19 @@ pub fn begin_step(
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
 }
 
-/// Chooses the number of substeps: the one that is set, or as many as the cloth needs that needs most.
+/// Chooses the number of substeps: the one that is set, or as many as the cloth needs that needs most. Shares out the budget for
+/// storms.
 pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
     cloths: Query<(&ClothSolver, &ClothTopology, &ClothParticles), With<Cloth>>,
 ) {
+    let wanted = cloths.iter().map(|(solver, topology, particles)| {
+        let weight = if topology.fabric.is_some() { MESH } else { 1.0 };
+        let unstretched = solver.substeps(topology) as f32;
+        weight * particles.len() as f32 * unstretched * particles.effort.more_substeps()
+    });
+    let wanted: f32 = wanted.sum();
+    step.granted_substeps = (step.substep_budget as f32 / wanted.max(1.0)).min(1.0);
     step.substeps = step.fixed_substeps.unwrap_or_else(|| {
         let needed = cloths
             .iter()

@@ -126,6 +126,7 @@ impl ClothStagesItem<'_, '_> {
         let strained = particles.effort.unmet();
         let entity = self.entity;
         let status = self.status.bypass_change_detection();
+        status.note_stretched(particles.effort.stretched());
         if strained != status.strained() && status.note_strained(strained) {
             let percent = strained * 100.0;
             warn!(

@@ -47,6 +47,7 @@ pub enum ErrorSource {
 pub struct ClothStatus {
     entries: Vec<(ErrorSource, ClothErrorKind)>,
     strained: f32,
+    stretched: f32,
 }
 
 impl ClothStatus {
@@ -64,6 +65,18 @@ impl ClothStatus {
     /// stand too far apart, a body within it. 0 where it is not, or is for a moment. It is logged when it begins.
     pub fn strained(&self) -> f32 {
         self.strained
+    }
+
+    /// Which part of a cloth's edges is longer by 3 % than its fabric lets them be [-], while it is asked for nothing that it has not: a storm, a
+    /// snatch, more weight than its substeps stand. 0 below 0.5 %. In a storm it takes more substeps then, within
+    /// [`most_substeps`](crate::settings::ClothSettings::most_substeps) and
+    /// [`substep_budget`](crate::settings::ClothSettings::substep_budget): what stays above is for want of those.
+    pub fn stretched(&self) -> f32 {
+        self.stretched
+    }
+
+    pub(crate) fn note_stretched(&mut self, stretched: f32) {
+        self.stretched = stretched;
     }
 
     /// Notes which part is strained; whether it was not before.

@@ -42,8 +42,8 @@
 //!
 //! One pass over the constraints in each of several substeps: at equal cost that stretches less than many passes in few. The error falls
 //! with the square of the substep, the cost grows in proportion. What is calm needs the number that is chosen; a hard gust, a heavy body, a
-//! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). What stretches
-//! a cloth, a hand and bodies that lie on it raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
+//! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). Storms,
+//! a hand and bodies that lie on the cloth raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
 //!
 //! # How good it is
 //!

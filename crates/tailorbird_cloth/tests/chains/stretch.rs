@@ -56,6 +56,40 @@ fn a_sheet_in_a_storm_hardly_stretches() {
     check("storm", worst, 6e-3, 0.2);
 }
 
+/// More while it blows, as many as before afterwards, and no more where the budget is 0.
+#[test]
+fn substeps_follow_a_storm() {
+    let storm = Wind::steady(Vec3::new(19.0, 0.0, 6.2));
+    for budget in [0, 500_000] {
+        let mut sheet = Sheet::new(&Scene {
+            pins: ClothPins::edges([GridEdge::Left]),
+            gravity: Vec3::NEG_Y * G,
+            wind: storm.clone(),
+            ..Scene::hang(SIZE)
+        });
+        sheet
+            .app
+            .world_mut()
+            .resource_mut::<ClothSettings>()
+            .substep_budget = budget;
+        let substeps = |sheet: &Sheet| sheet.app.world().resource::<ClothStep>().substeps();
+        sheet.step();
+        let calm = substeps(&sheet);
+        let mut blown = calm;
+        for _ in 0..240 {
+            sheet.step();
+            blown = blown.max(substeps(&sheet));
+        }
+        sheet.app.insert_resource(Wind::vacuum());
+        sheet.steps(900);
+        let after = substeps(&sheet);
+        println!("budget {budget}: {calm}, {blown}, {after} substeps");
+        assert_eq!(after, calm);
+        assert_eq!(blown > calm, budget > 0, "{calm}, {blown}");
+        assert_eq!(sheet.complaint(), None);
+    }
+}
+
 #[test]
 fn a_sheet_that_is_dragged_quickly_hardly_stretches() {
     let mut sheet = Sheet::new(&Scene {

@@ -133,6 +133,7 @@ fn settings_come_back() {
             gravity: Vec3::new(0.1, -1.62, 0.0),
             substeps: Some(12),
             most_substeps: 40,
+            substep_budget: 70_000,
             iterations: 3,
             instruction_set,
             time_scale: 0.5,
