@@ -155,7 +155,7 @@ impl Grant {
             + heap(&self.asked)
             + heap(&self.chains)
             + heap(&self.springs)
-            + self.around.iter().map(|a| heap(a)).sum::<usize>()
+            + self.around.iter().map(heap).sum::<usize>()
     }
 
     /// Grants what is asked for, where more than the fabric has is, and takes back what was, at the end of a step.
