@@ -49,6 +49,8 @@ const LEAST: f32 = 1e-3;
 pub(crate) struct Grant {
     /// For each particle the strain along warp and weft [-].
     strain: Vec<[f32; 2]>,
+    /// The largest of those [-].
+    largest: f32,
     /// For each slot of the chains how long its edge may be \[m\].
     chains: Vec<f32>,
     /// The same for each spring across the threads.
@@ -115,7 +117,7 @@ impl Grant {
 
     /// The largest strain that is granted [-].
     pub fn largest(&self) -> f32 {
-        self.strain.iter().flatten().copied().fold(0.0, f32::max)
+        self.largest
     }
 
     /// How long the edges of the chains may be \[m\].
@@ -139,6 +141,7 @@ impl Grant {
     /// Nothing is granted any more.
     pub fn clear(&mut self) {
         self.strain.clear();
+        self.largest = 0.0;
         self.trial = Trial::None;
         self.rescale();
     }
@@ -183,15 +186,15 @@ impl Grant {
         self.asked.resize(n, [0.0; 2]);
         // Nobody needs it.
         let times = if effort.is_strained() { 1.0 } else { UNUSED };
-        let mut largest = 0.0_f32;
+        self.largest = 0.0;
         for (strain, asked) in self.strain.iter_mut().zip(&self.asked) {
             for (strain, asked) in strain.iter_mut().zip(asked) {
                 *strain += growth * (asked.min(MOST) - BORNE - *strain).max(0.0);
                 *strain = (*strain - times * taken_back(*strain) * seconds).max(0.0);
-                largest = largest.max(*strain);
+                self.largest = self.largest.max(*strain);
             }
         }
-        if largest < LEAST {
+        if self.largest < LEAST {
             self.clear();
             return;
         }

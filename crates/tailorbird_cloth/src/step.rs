@@ -153,7 +153,7 @@ impl ClothStep {
     ) -> u32 {
         let automatic = || {
             let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
-            let stretched = 1.0 + particles.effort.more_substeps() * self.granted_substeps;
+            let stretched = 1.0 + more_substeps(solver, particles) * self.granted_substeps;
             let times = self.loaded(particles).max(stretched);
             let loaded = (unloaded as f32 * times).ceil() as u32;
             let held = if particles.grabbed.is_some() {
@@ -269,23 +269,32 @@ pub fn begin_step(
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
 }
 
+/// How many more times as many substeps as at rest a cloth wants for a storm that stretches it [-]. The classic solver does not look.
+fn more_substeps(solver: ClothSolver, particles: &ClothParticles) -> f32 {
+    match solver {
+        ClothSolver::Chains => particles.effort.more_substeps(),
+        ClothSolver::GaussSeidel => 0.0,
+    }
+}
+
 /// Chooses the number of substeps: the one that is set, or as many as the cloth needs that needs most. Shares out the budget for
 /// storms.
 pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
-    cloths: Query<(&ClothSolver, &ClothTopology, &ClothParticles), With<Cloth>>,
+    cloths: Query<(&ClothSolver, &ClothTopology, &ClothParticles, &ClothRest), With<Cloth>>,
 ) {
-    let wanted = cloths.iter().map(|(solver, topology, particles)| {
+    let awake = cloths.iter().filter(|(.., rest)| !rest.is_asleep());
+    let wanted = awake.map(|(solver, topology, particles, _)| {
         let weight = if topology.fabric.is_some() { MESH } else { 1.0 };
         let unstretched = solver.substeps(topology) as f32;
-        weight * particles.len() as f32 * unstretched * particles.effort.more_substeps()
+        weight * particles.len() as f32 * unstretched * more_substeps(*solver, particles)
     });
     let wanted: f32 = wanted.sum();
     step.granted_substeps = (step.substep_budget as f32 / wanted.max(1.0)).min(1.0);
     step.substeps = step.fixed_substeps.unwrap_or_else(|| {
         let needed = cloths
             .iter()
-            .map(|(solver, topology, particles)| step.substeps_of(*solver, topology, particles));
+            .map(|(solver, topology, particles, _)| step.substeps_of(*solver, topology, particles));
         needed.max().unwrap_or(1)
     });
 }
