@@ -11,7 +11,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
-    lattice::{Block, for_bodies},
+    lattice::{Block, for_few},
     line::{self, FREE, Give, Lines, MeshLines, NO_MASS, PRESSED, TOUCHING, Whole},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
@@ -134,7 +134,7 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     with_scratch(longest * WIDEST * 13, |scratch| {
         for batch in batches {
             if mesh.pressed.is_some() {
-                for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
+                for_few!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
             } else {
                 dispatch!(level, simd => solve_batch::<_, false>(simd, mesh, stretch, batch, scratch));
             }

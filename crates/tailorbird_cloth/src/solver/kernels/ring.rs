@@ -56,7 +56,7 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
     let joints = Joints { lines, closing };
     joints.copy::<S, CONTACT>();
     if CONTACT != PRESSED && !taut.is_empty() {
-        // First all others with the joints where they are, then the joints: each takes the sum that `share` is about further down.
+        // All others with the joints where they are, then the joints.
         let w = joints.hold::<S>();
         let pulls = taut.clone();
         simd.vectorize(
@@ -113,7 +113,10 @@ impl Joints<'_> {
         had
     }
 
-    /// Moves each by the tension of its two edges beyond what they bear, which is noted for the edges `taut`.
+    /// Moves each by the tension of its edges beyond what they bear, which is noted for the edges `taut`, when all others have been moved as if it
+    /// were held: what that has left of the system of `share` is a ring's corners, and solved as those of its edges are, y_k = A_k + B_k y_0.
+    ///
+    /// Where particles are in contact B would be a matrix. There the joint alone moves, and the sum that is the least further on falls as well.
     #[inline(always)]
     fn share<S: Simd, const CONTACT: u8>(
         self,
@@ -121,6 +124,13 @@ impl Joints<'_> {
         taut: &Range<usize>,
         w: [f32; WIDEST],
     ) {
+        let Lines {
+            position,
+            inv_mass,
+            normal,
+            shared,
+            ..
+        } = self.lines;
         let lanes = S::f32s::LEN;
         for (lane, edge) in self.rings::<S>() {
             let tension = |e: usize| {
@@ -130,24 +140,69 @@ impl Joints<'_> {
                     0.0
                 }
             };
-            let at = |of: SharedPoints, k: usize| {
-                let i = self.lines.at(k) + lane;
+            let at = |k: usize| self.lines.at(k) + lane;
+            let get = |of: SharedPoints, k: usize| {
+                let i = at(k);
                 Vec3::new(of.x.get(i), of.y.get(i), of.z.get(i))
             };
-            let position = self.lines.position;
-            let [x_0, x_n] = [tension(0), tension(edge)];
-            let place = at(position, 0);
-            let mut push = x_0 * (at(position, 1) - place) + x_n * (at(position, edge) - place);
+            let set = |k: usize, place: Vec3| {
+                let i = at(k);
+                position.x.set(i, place.x);
+                position.y.set(i, place.y);
+                position.z.set(i, place.z);
+            };
+            let [first, last] = [tension(0), tension(edge)];
+            if first + last == 0.0 {
+                continue;
+            }
+            let follows = shared.x;
+            let mut gain = 0.0;
+            for k in 1..=edge {
+                let mut part = 0.0;
+                if CONTACT == FREE {
+                    let [before, after] = [tension(k - 1), tension(k)];
+                    let w = inv_mass.get(at(k));
+                    let pivot = 1.0 + w * (after + before * (1.0 - gain));
+                    part = w
+                        * before
+                        * if k == 1 {
+                            1.0
+                        } else {
+                            follows.get((k - 1) * lanes + lane)
+                        };
+                    if k == edge {
+                        part += w * after;
+                    }
+                    part /= pivot;
+                    gain = if k == edge { 0.0 } else { w * after / pivot };
+                }
+                factors.set(2 * k * lanes + lane, gain);
+                follows.set(k * lanes + lane, part);
+            }
+            let mut next = 0.0;
+            for k in (1..=edge).rev() {
+                let i = k * lanes + lane;
+                next = follows.get(i) + factors.get(2 * k * lanes + lane) * next;
+                follows.set(i, next);
+            }
+
+            let place = get(position, 0);
+            let mut push =
+                first * (get(position, 1) - place) + last * (get(position, edge) - place);
             if CONTACT != FREE {
-                let normal = at(self.lines.normal, 0);
+                let normal = get(normal, 0);
                 push -= normal.dot(push) * normal;
             }
-            let moved = place + w[lane] / (1.0 + w[lane] * (x_0 + x_n)) * push;
+            let kept = |k: usize| 1.0 - follows.get(k * lanes + lane);
+            let w = w[lane];
+            let moved = w / (1.0 + w * (first * kept(1) + last * kept(edge))) * push;
             for k in [0, edge + 1] {
-                let i = self.lines.at(k) + lane;
-                position.x.set(i, moved.x);
-                position.y.set(i, moved.y);
-                position.z.set(i, moved.z);
+                set(k, place + moved);
+            }
+            if CONTACT == FREE {
+                for k in 1..=edge {
+                    set(k, get(position, k) + follows.get(k * lanes + lane) * moved);
+                }
             }
         }
     }
@@ -232,7 +287,7 @@ impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
             let mut before = beside::<S, CONTACT>(w_a, d_before, d, n_a);
             let mut owed = self.if_last(e, beside::<S, CONTACT>(self.w, d, self.d, self.n));
             if e == 1 {
-                owed = owed + before;
+                owed += before;
                 (second, before) = (before, zero);
             }
             let factor = before * inv_pivot;
@@ -257,10 +312,10 @@ impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
             let a = lines.particle(simd, e);
             let mut owed = self.if_last(e, beside::<S, CONTACT>(self.w, b - a, self.d, self.n));
             if e == 1 {
-                owed = owed + second;
+                owed += second;
             }
-            side_of_first = side_of_first + owed * alone;
-            left_of_first = left_of_first - owed * by_first;
+            side_of_first += owed * alone;
+            left_of_first -= owed * by_first;
             b = a;
         }
         // Of a ring that lies in one place rounding may leave less.
