@@ -224,15 +224,13 @@ impl Effort {
 
     /// What holds, touches and drives the cloth moves at this speed [m/s].
     fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
-        let [held, touched] = around;
-        // What trembles on a collider touches it and does not.
-        if speed > STILL || held != self.around[0] || touched > self.around[1] {
+        if speed > STILL || around != self.around {
             (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
-            self.around = around;
         } else {
             self.still += seconds;
             self.lull += seconds;
         }
+        self.around = around;
     }
 
     /// Which part of its speed is left in a lull [-].
