@@ -131,7 +131,7 @@ fn and_is_whole_when_the_body_has_gone() {
                 let scene = format!("impaled-gone --mesh {mesh} --size {size} --body {body}");
                 holds(
                     &scene,
-                    &[("stretch_max", of(mesh, [0.02, 0.03])), ("speed_max", 2.0)],
+                    &[("stretch_max", of(mesh, [0.02, 0.04])), ("speed_max", 2.0)],
                 );
             }
         }
