@@ -10,8 +10,7 @@ use super::kernels::{
     squeeze,
 };
 use crate::{
-    effort::{Effort, Longest, Seen},
-    grant::Threads,
+    effort::{Effort, Longest},
     particles::ClothParticles,
     points::Points,
     topology::{Topology, lattice::Lattice},
@@ -50,17 +49,10 @@ pub(crate) fn calm(
                 times: survey.longest,
                 part: survey.longest / side,
             };
-            let seen = Seen {
-                strained: survey.strained,
-                longest,
-                granted: !grant.is_empty(),
-                is_mesh: false,
-            };
-            effort.see(seen, contacts);
+            effort.see(survey.strained, longest, contacts, None);
         } else {
             *effort = Effort::default();
         }
-        grant.renew(Threads::Sheet(*lattice), position, seconds, *effort);
         if !survey.squeezed {
             return;
         }
@@ -95,17 +87,11 @@ pub(crate) fn calm(
                 times: far.sqrt(),
                 part: farthest.sqrt() / fabric.size(),
             };
-            let seen = Seen {
-                strained: part,
-                longest,
-                granted: !grant.is_empty(),
-                is_mesh: true,
-            };
-            effort.see(seen, contacts);
+            effort.see(part, longest, contacts, Some(!grant.is_empty()));
         } else {
             *effort = Effort::default();
         }
-        grant.renew(Threads::Mesh(fabric), position, seconds, *effort);
+        grant.renew(fabric, position, seconds, *effort);
         if !squeezed {
             return;
         }
@@ -136,7 +122,6 @@ fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]
         normal: None,
         pressed: None,
         give: Give::default(),
-        lengths: None,
     }
 }
 

@@ -24,9 +24,6 @@ const MOST_COVERS: usize = 64;
 /// In [`Chains::particle`]: no particle.
 pub const NONE: u32 = u32::MAX;
 
-/// In [`ChainBatch::closing`]: no ring.
-pub const OPEN: u32 = u32::MAX;
-
 /// Up to [`LANES`] chains of similar length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainBatch {
@@ -34,8 +31,6 @@ pub struct ChainBatch {
     pub slots: Range<usize>,
     /// Particles along the longest of them, at least 2.
     pub length: usize,
-    /// For each lane the edge that closes a ring, whose last particle is its first one, or [`OPEN`]; none where all are open.
-    pub closing: Option<[u32; LANES]>,
 }
 
 /// Batches that share no particle and can be solved in any order.
@@ -47,8 +42,7 @@ pub struct ChainPass {
     pub batches: Range<usize>,
 }
 
-/// The edges along warp and weft as chains, every edge in one of them; what goes round is a ring, whose last link is its first particle once
-/// more.
+/// The edges along warp and weft as chains, every edge in one of them.
 ///
 /// Slot `batch.slots.start + k * LANES + lane` is the `k`-th link of a chain.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -147,11 +141,7 @@ impl Chains {
             self.rest_length.resize(end, 0.0);
             self.scale.resize(end, 0.0);
             self.along_warp.resize(end, 0.0);
-            let mut closing = [OPEN; LANES];
             for (lane, &(chain, reversed)) in batch.lanes.iter().enumerate() {
-                if cover.is_ring(chain) {
-                    closing[lane] = cover.particles(chain).len() as u32 - 2;
-                }
                 for (k, (particle, edge)) in cover.links(chain, reversed).enumerate() {
                     let slot = start + k * LANES + lane;
                     self.particle[slot] = number[particle as usize];
@@ -166,7 +156,6 @@ impl Chains {
             self.batches.push(ChainBatch {
                 slots: start..end,
                 length: batch.length,
-                closing: (closing != [OPEN; LANES]).then_some(closing),
             });
         }
         self.passes.push(ChainPass {

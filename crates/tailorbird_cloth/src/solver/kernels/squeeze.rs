@@ -197,7 +197,6 @@ mod tests {
                         normal: None,
                         pressed: None,
                         give: Give::default(),
-                        lengths: None,
                     };
                     let whole = RigidMotion {
                         displacement: Vec3::Y,

@@ -131,7 +131,6 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         normal: None,
         pressed: None,
         give: Give::default(),
-        lengths: None,
     };
     let line = LineStiffness {
         rest_length: SPACING,
@@ -220,7 +219,6 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             normal: None,
             pressed: None,
             give: Give::default(),
-            lengths: None,
         },
         previous: particles.previous,
         lost: SharedPoints::new(&mut lost),
