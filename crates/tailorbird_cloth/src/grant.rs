@@ -1,8 +1,8 @@
-//! How much longer than at rest the threads of a strained mesh may be.
+//! How much longer than at rest the threads of a strained cloth may be.
 //!
-//! Where holds or colliders ask for more than a fabric has, its chains contradict each other: each takes what it can from those that cross
+//! Where holds or colliders ask for more than a fabric has, its lines contradict each other: each takes what it can from those that cross
 //! it, and single edges take what is left. So the fabric is granted what is asked for: a strain along the warp and one along the weft for
-//! each particle, spread over its surroundings, that grows towards the mean strain around there. Then the chains agree again, and the demand
+//! each particle, spread over its surroundings, that grows towards the mean strain around there. Then the lines agree again, and the demand
 //! is shared evenly. What was granted is taken back at a rate, whether or not the demand still stands; so what was stretched comes back without
 //! becoming speed.
 
@@ -14,9 +14,11 @@ use crate::{
     effort::Effort,
     memory::heap,
     points::Points,
+    solver::kernels::{lanes::Shared, lattice::Lengths},
     topology::{
         chains::Chains,
         fabric::{Fabric, Springs},
+        lattice::Lattice,
     },
 };
 
@@ -44,17 +46,28 @@ const MOST: f32 = 1.0;
 /// Less than this is nothing [-].
 const LEAST: f32 = 1e-3;
 
-/// What is granted to a mesh; empty where nothing is.
+/// What holds a cloth together.
+#[derive(Clone, Copy)]
+pub(crate) enum Threads<'a> {
+    /// Rows and columns.
+    Sheet(Lattice),
+    /// Chains and springs.
+    Mesh(&'a Fabric),
+}
+
+/// What is granted to a cloth; empty where nothing is.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grant {
     /// For each particle the strain along warp and weft [-].
     strain: Vec<[f32; 2]>,
     /// The largest of those [-].
     largest: f32,
-    /// For each slot of the chains how long its edge may be \[m\].
+    /// For each slot of the chains how long its edge may be; of a sheet for each particle the edge to the next of its row \[m\].
     chains: Vec<f32>,
-    /// The same for each spring across the threads.
+    /// The same for each spring across the threads; for each particle the diagonals of the cell beyond it.
     springs: Vec<f32>,
+    /// For each particle of a sheet the same for the edge to the next of its column.
+    columns: Vec<f32>,
     /// Whether a demand stands, or a load pulls.
     trial: Trial,
     /// What the strain of the edges of particles says of warp and weft; scratch.
@@ -138,6 +151,15 @@ impl Grant {
         }
     }
 
+    /// How long the edges of a sheet may be; none where they are as at rest.
+    pub fn sheet(&mut self, particles: usize) -> Option<Lengths<'_>> {
+        (self.columns.len() == particles && particles > 0).then(|| Lengths {
+            rows: Shared::new(&mut self.chains),
+            columns: Shared::new(&mut self.columns),
+            diagonals: Shared::new(&mut self.springs),
+        })
+    }
+
     /// Nothing is granted any more.
     pub fn clear(&mut self) {
         self.strain.clear();
@@ -146,10 +168,11 @@ impl Grant {
         self.rescale();
     }
 
-    /// The mesh has another scale: how long edges may be is known at the end of the next step.
+    /// The cloth has another scale: how long edges may be is known at the end of the next step.
     pub fn rescale(&mut self) {
         self.chains.clear();
         self.springs.clear();
+        self.columns.clear();
     }
 
     /// What it takes on the heap \[byte\].
@@ -158,12 +181,13 @@ impl Grant {
             + heap(&self.asked)
             + heap(&self.chains)
             + heap(&self.springs)
+            + heap(&self.columns)
             + self.around.iter().map(heap).sum::<usize>()
     }
 
     /// Grants what is asked for, where more than the fabric has is, and takes back what was, at the end of a step.
-    pub fn renew(&mut self, fabric: &Fabric, position: &Points, seconds: f32, effort: Effort) {
-        let n = fabric.particles();
+    pub fn renew(&mut self, threads: Threads, position: &Points, seconds: f32, effort: Effort) {
+        let n = threads.particles();
         if self.strain.len() != n {
             self.clear();
             if !effort.is_asked {
@@ -174,7 +198,7 @@ impl Grant {
         self.asked.clear();
         let mut growth = 0.0;
         if effort.is_asked {
-            self.measure(fabric, position);
+            self.measure(threads, position);
             let [granted, asked] = [&self.strain, &self.asked].map(|strain| {
                 let sum: f32 = strain.iter().flatten().map(|part| part.max(0.0)).sum();
                 sum / n as f32
@@ -198,28 +222,28 @@ impl Grant {
             self.clear();
             return;
         }
-        self.lengthen(fabric, position, seconds);
+        self.lengthen(threads, position, seconds);
     }
 
     /// What is asked for around each particle: the mean over its surroundings. Where there is less, others have more.
-    fn measure(&mut self, fabric: &Fabric, position: &Points) {
+    fn measure(&mut self, threads: Threads, position: &Points) {
         let [around, next] = &mut self.around;
         around.clear();
-        around.resize(fabric.particles(), Around::default());
-        for (ends, rest_length, c) in edges(fabric) {
+        around.resize(threads.particles(), Around::default());
+        threads.each_edge(|ends, rest_length, c| {
             let [a, b] = ends.map(|i| position.get(i as usize));
             let strain = (a.distance(b) / rest_length - 1.0).min(2.0 * MOST);
             for i in ends {
                 around[i as usize].add(c, strain);
             }
-        }
+        });
         for round in 0..ROUNDS {
             next.clone_from(around);
-            for (ends, ..) in edges(fabric) {
+            threads.each_edge(|ends, _, _| {
                 let [a, b] = ends.map(|i| i as usize);
                 next[a].add_part(&around[b], 1.0);
                 next[b].add_part(&around[a], 1.0);
-            }
+            });
             for (mean, sum) in around.iter_mut().zip(&*next) {
                 *mean = Around::default();
                 mean.add_part(sum, 1.0 / sum.count.max(1.0));
@@ -236,7 +260,7 @@ impl Grant {
     }
 
     /// How long edges are to be.
-    fn lengthen(&mut self, fabric: &Fabric, position: &Points, seconds: f32) {
+    fn lengthen(&mut self, threads: Threads, position: &Points, seconds: f32) {
         let strain = &self.strain;
         let push = PUSH * seconds;
         let length = |ends: [u32; 2], rest_length: f32, c: f32| {
@@ -246,20 +270,46 @@ impl Grant {
             let is = a.distance(b) + push * rest_length;
             (rest_length * (1.0 + granted)).min(is.max(rest_length))
         };
-        let chains = fabric.chains();
-        self.chains.clone_from(&chains.rest_length);
-        for (slot, ends) in chains.slots() {
-            self.chains[slot] = length(ends, self.chains[slot], chains.along_warp[slot]);
+        match threads {
+            Threads::Sheet(lattice) => {
+                let [dx, dy] = lattice.spacing.to_array();
+                for lengths in [&mut self.chains, &mut self.columns, &mut self.springs] {
+                    lengths.clear();
+                    lengths.resize(strain.len(), 0.0);
+                }
+                for [a, b] in lattice.edges() {
+                    let (i, is_row) = (a as usize, b == a + 1);
+                    if is_row {
+                        self.chains[i] = length([a, b], dx, 0.0);
+                    } else {
+                        self.columns[i] = length([a, b], dy, 1.0);
+                    }
+                }
+                let columns = lattice.columns as usize;
+                for (i, diagonal) in self.springs.iter_mut().enumerate() {
+                    let [right, below] = [i + 1, i + columns].map(|k| k.min(strain.len() - 1));
+                    let row = 0.5 * (self.chains[i] + self.chains[below]);
+                    let column = 0.5 * (self.columns[i] + self.columns[right]);
+                    *diagonal = row.hypot(column);
+                }
+            }
+            Threads::Mesh(fabric) => {
+                let chains = fabric.chains();
+                self.chains.clone_from(&chains.rest_length);
+                for (slot, ends) in chains.slots() {
+                    self.chains[slot] = length(ends, self.chains[slot], chains.along_warp[slot]);
+                }
+                let springs = fabric.shear();
+                self.springs.clear();
+                let all = springs
+                    .ends
+                    .iter()
+                    .zip(&springs.rest_length)
+                    .zip(&springs.along_warp);
+                self.springs
+                    .extend(all.map(|((ends, rest), c)| length(*ends, *rest, *c)));
+            }
         }
-        let springs = fabric.shear();
-        self.springs.clear();
-        let all = springs
-            .ends
-            .iter()
-            .zip(&springs.rest_length)
-            .zip(&springs.along_warp);
-        self.springs
-            .extend(all.map(|((ends, rest), c)| length(*ends, *rest, *c)));
     }
 }
 
@@ -269,18 +319,39 @@ fn taken_back(strain: f32) -> f32 {
     of_all + strain * (of_it + strain * of_square)
 }
 
-/// The ends, rest lengths \[m\] and [`Chains::along_warp`] of all edges.
-fn edges(fabric: &Fabric) -> impl Iterator<Item = ([u32; 2], f32, f32)> + '_ {
-    let chains = fabric.chains();
-    let threads = (chains.slots())
-        .map(|(slot, ends)| (ends, chains.rest_length[slot], chains.along_warp[slot]));
-    let springs = fabric.shear();
-    let across = springs
-        .ends
-        .iter()
-        .zip(&springs.rest_length)
-        .zip(&springs.along_warp);
-    threads.chain(across.map(|((ends, length), c)| (*ends, *length, *c)))
+impl Threads<'_> {
+    fn particles(self) -> usize {
+        match self {
+            Self::Sheet(lattice) => lattice.columns as usize * lattice.rows as usize,
+            Self::Mesh(fabric) => fabric.particles(),
+        }
+    }
+
+    /// Calls `f` with the ends, rest length \[m\] and [`Chains::along_warp`] of each edge; of a sheet without the diagonals.
+    fn each_edge(self, mut f: impl FnMut([u32; 2], f32, f32)) {
+        match self {
+            Self::Sheet(lattice) => {
+                let [dx, dy] = lattice.spacing.to_array();
+                for ends in lattice.edges() {
+                    if ends[1] == ends[0] + 1 {
+                        f(ends, dx, 0.0);
+                    } else {
+                        f(ends, dy, 1.0);
+                    }
+                }
+            }
+            Self::Mesh(fabric) => {
+                let chains = fabric.chains();
+                for (slot, ends) in chains.slots() {
+                    f(ends, chains.rest_length[slot], chains.along_warp[slot]);
+                }
+                let springs = fabric.shear();
+                for (k, ends) in springs.ends.iter().enumerate() {
+                    f(*ends, springs.rest_length[k], springs.along_warp[k]);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]

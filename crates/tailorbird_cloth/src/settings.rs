@@ -22,7 +22,7 @@
 //! | setting | default | what it costs |
 //! | --- | --- | --- |
 //! | [`gravity`](ClothSettings::gravity) | 9.81 m/s² down | nothing |
-//! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution and by storms, for each cloth its own | in proportion to their number |
+//! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution, storms and blows, for each cloth its own | in proportion to their number |
 //! | [`substep_budget`](ClothSettings::substep_budget) | 500,000 | 3 ms (sheets) to 8 ms (meshes) in a storm, one core, AVX-512; nothing in calm air |
 //! | [`iterations`](ClothSettings::iterations) | 1 | nearly in proportion; substeps are the better use of it |
 //! | [`instruction_set`](ClothSettings::instruction_set) | the best of the machine | 128²: 1.5 ms with AVX-512, 2.6 AVX2, 5.0 SSE2, 5.5 scalar; the same bits |
@@ -60,11 +60,11 @@ pub struct ClothSettings {
     /// motion finer, at proportional cost. `None` is as many as the finest cloth needs: see
     /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
     pub substeps: Option<u32>,
-    /// The most substeps that a cloth takes where their number is not set: it takes more than at rest in a hand, under bodies, and where air,
-    /// forces or its entity's motion of more than 5 m/s stretch it.
+    /// The most substeps that a cloth takes where their number is not set: it takes more than at rest in a hand, under bodies, where air,
+    /// forces or its entity's motion of more than 5 m/s stretch it, where it is struck, and as a mesh that is asked for more than it has.
     pub most_substeps: u32,
-    /// How many particles times substeps all cloths together take in a step at most, for air, forces and motion that stretch them, beyond what they
-    /// take at rest; each its part of what it wants. A particle of a mesh that is no grid counts as eight. 0 is the same number always.
+    /// How many particles times substeps all cloths together take in a step at most, for storms, blows and meshes that are asked for more than they
+    /// have, beyond what they take at rest; each its part of what it wants. A particle of a mesh that is no grid counts as eight. 0 is the same number always.
     pub substep_budget: u32,
     /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
     /// in few.

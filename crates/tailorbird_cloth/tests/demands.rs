@@ -65,7 +65,7 @@ fn posts_too_far_apart_stretch_a_sheet_evenly() {
         for apart in [0.02, 0.05, 0.1, 0.2] {
             let bounds = [
                 ("speed_max", of(mesh, [0.05, 0.1])),
-                ("stretch_max", apart + of(mesh, [0.05, 0.25])),
+                ("stretch_max", apart + 0.05),
                 ("speed_peak", 3.0),
             ];
             for size in SIZES {
@@ -81,6 +81,9 @@ fn posts_too_far_apart_stretch_a_sheet_evenly() {
                 if fabric == "rubber" {
                     // It is asked for nothing that it has not got.
                     bounds[1].1 = apart + of(mesh, [0.05, 0.6]);
+                } else if apart < 0.03 {
+                    // Too little counts as strained for edges to be shared out; single ones of an irregular mesh have most of it.
+                    bounds[1].1 = apart + of(mesh, [0.05, 0.15]);
                 }
                 holds(&scene, &bounds);
             }
@@ -94,9 +97,10 @@ fn a_post_that_is_put_back_throws_nothing() {
         for size in SIZES {
             for apart in [0.02, 0.05, 0.1, 0.2] {
                 let bounds = [
-                    ("speed_peak", of(mesh, [4.0, 9.0])),
-                    ("speed_max", of(mesh, [0.1, 0.8])),
-                    ("stretch_max", of(mesh, [0.01, 0.25])),
+                    ("speed_peak", 3.0),
+                    // It swings.
+                    ("speed_max", 1.0),
+                    ("stretch_max", of(mesh, [0.01, 0.06])),
                 ];
                 holds(
                     &format!("put-back --apart {apart} --mesh {mesh} --size {size}"),
@@ -139,26 +143,35 @@ fn a_ball_that_is_pushed_into_a_net_leaves_it_whole() {
     for mesh in MESHES {
         for size in SIZES {
             let bounds = [
-                ("speed_max", 0.1),
-                ("stretch_max", of(mesh, [0.01, 0.25])),
+                // It swings.
+                ("speed_max", 0.6),
+                ("stretch_max", of(mesh, [0.01, 0.08])),
                 ("speed_peak", 5.0),
-                ("stretch_peak", of(mesh, [1.8, 1.5])),
+                ("stretch_peak", 1.0),
             ];
             holds(&format!("net --mesh {mesh} --size {size}"), &bounds);
         }
     }
 }
 
+/// Of a grid, whose threads are rings. It may slip off, and fall.
 #[test]
-fn a_tube_that_is_too_tight_does_not_boil() {
-    for mesh in MESHES {
-        for tight in [0.01, 0.03, 0.1] {
-            // It may slip off, and fall for some seconds.
-            let bounds = [("speed_peak", 40.0), ("stretch_peak", 3.5)];
-            holds(
-                &format!("tube --tight {tight} --mesh {mesh} --size 33"),
-                &bounds,
-            );
+fn a_tube_that_is_too_tight_stretches_evenly() {
+    for (tight, most) in [(0.01, 0.08), (0.03, 0.08), (0.1, 0.2)] {
+        for size in SIZES {
+            let bounds = [("speed_peak", 3.0), ("stretch_max", most)];
+            holds(&format!("tube --tight {tight} --size {size}"), &bounds);
+        }
+    }
+}
+
+/// Of an irregular mesh, which has no rings.
+#[test]
+fn an_irregular_tube_that_is_too_tight_does_not_boil() {
+    for (tight, most) in [(0.01, 0.2), (0.03, 0.4), (0.1, 0.2)] {
+        for size in SIZES {
+            let scene = format!("tube --tight {tight} --mesh irregular --size {size}");
+            holds(&scene, &[("speed_peak", 40.0), ("stretch_max", most)]);
         }
     }
 }
@@ -190,8 +203,8 @@ fn a_ball_that_flies_through_leaves_nothing_behind() {
             for speed in [5, 20, 40] {
                 let scene = format!("ball --speed {speed} --mesh {mesh} --size {size}");
                 let bounds = [
-                    ("stretch_p99", of(mesh, [0.05, 0.3])),
-                    ("stretch_max", of(mesh, [0.5, 1.0])),
+                    ("stretch_p99", 0.05),
+                    ("stretch_max", of(mesh, [0.1, 0.15])),
                 ];
                 holds(&scene, &bounds);
             }

@@ -1,6 +1,6 @@
 //! Tests of grants.
 
-use bevy_math::Vec3;
+use bevy_math::{UVec2, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
@@ -49,12 +49,53 @@ proptest! {
         let position = moved(&topology, |p| p * Vec3::new(1.0 + u, 1.0 + v, 1.0));
         let mut grant = Grant::default();
         for _ in 0..60 {
-            grant.renew(fabric, &position, SECONDS, Effort::asking(true));
+            grant.renew(Threads::Mesh(fabric), &position, SECONDS, Effort::asking(true));
         }
         let [low, high] = beyond(&grant, fabric, &position);
         let most = u.max(v);
         let room = BORNE + 0.05 * most + taken_back(most) / GROWTH;
         prop_assert!(high < room + 0.01 && low > -0.05 * most - 1e-4, "{low} to {high}, {room}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// The same for a sheet: of its rows, its columns and its diagonals.
+    #[test]
+    fn what_a_sheet_is_stretched_by_it_is_granted(
+        columns in 2_u32..20,
+        rows in 2_u32..20,
+        u in 0.0_f32..0.3,
+        v in 0.0_f32..0.3,
+    ) {
+        let cloth = Cloth::grid(Vec2::new(1.0, 2.0), UVec2::new(columns, rows));
+        let topology = Topology::build(&cloth.shape, Vec3::ONE).expect("valid");
+        let lattice = topology.lattice.expect("a grid");
+        let position = moved(&topology, |p| p * Vec3::new(1.0 + v, 1.0 + u, 1.0));
+        let mut grant = Grant::default();
+        for _ in 0..60 {
+            grant.renew(Threads::Sheet(lattice), &position, SECONDS, Effort::asking(true));
+        }
+        let n = topology.particles();
+        let granted = |strain: f32| (strain - BORNE - taken_back(strain) / GROWTH).max(0.0);
+        let [dx, dy] = lattice.spacing.to_array();
+        let Some(lengths) = grant.sheet(n) else {
+            prop_assert!(granted(u.max(v)) < 0.01, "{u}, {v}");
+            return Ok(());
+        };
+        for [a, b] in lattice.edges() {
+            let (length, rest, strain) = if b == a + 1 {
+                (lengths.rows.get(a as usize), dx, v)
+            } else {
+                (lengths.columns.get(a as usize), dy, u)
+            };
+            let is = length / rest - 1.0;
+            prop_assert!((is - granted(strain)).abs() < 0.01 + 0.05 * strain, "{is} of {strain}");
+        }
+        let diagonal = lengths.diagonals.get(0);
+        let expected = (dx * (1.0 + granted(v))).hypot(dy * (1.0 + granted(u)));
+        prop_assert!((diagonal - expected).abs() < 0.02 * expected, "{diagonal}, {expected}");
     }
 }
 
@@ -65,20 +106,35 @@ fn what_is_granted_is_taken_back_at_its_rate() {
     let position = moved(&topology, |p| p * Vec3::new(1.2, 1.0, 1.0));
     let mut grant = Grant::default();
     for _ in 0..60 {
-        grant.renew(fabric, &position, SECONDS, Effort::asking(true));
+        grant.renew(
+            Threads::Mesh(fabric),
+            &position,
+            SECONDS,
+            Effort::asking(true),
+        );
     }
     let start = grant.largest();
     assert!((0.15..0.25).contains(&start), "{start}");
     let mut steps = 0;
     while grant.largest() > 0.5 * start {
-        grant.renew(fabric, &position, SECONDS, Effort::asking(false));
+        grant.renew(
+            Threads::Mesh(fabric),
+            &position,
+            SECONDS,
+            Effort::asking(false),
+        );
         steps += 1;
     }
     let half = steps as f32 * SECONDS;
     let [fastest, slowest] = [start, 0.5 * start].map(|g| 0.5 * start / (UNUSED * taken_back(g)));
     assert!((fastest..slowest + SECONDS).contains(&half), "{half} s");
     for _ in 0..300 {
-        grant.renew(fabric, &position, SECONDS, Effort::asking(false));
+        grant.renew(
+            Threads::Mesh(fabric),
+            &position,
+            SECONDS,
+            Effort::asking(false),
+        );
     }
     assert!(grant.is_empty());
     assert_eq!(
@@ -134,7 +190,12 @@ fn what_is_not_finite_is_not_granted() {
         position.set(7, Vec3::splat(bad));
         let mut grant = Grant::default();
         for _ in 0..10 {
-            grant.renew(fabric, &position, SECONDS, Effort::asking(true));
+            grant.renew(
+                Threads::Mesh(fabric),
+                &position,
+                SECONDS,
+                Effort::asking(true),
+            );
         }
         let finite = |lengths: &[f32]| lengths.iter().all(|l| (0.0..1.0).contains(l));
         assert!(finite(grant.chains(fabric.chains())), "{bad}");

@@ -10,7 +10,8 @@ use super::kernels::{
     squeeze,
 };
 use crate::{
-    effort::{Effort, Longest},
+    effort::{Effort, Longest, Seen},
+    grant::Threads,
     particles::ClothParticles,
     points::Points,
     topology::{Topology, lattice::Lattice},
@@ -49,10 +50,17 @@ pub(crate) fn calm(
                 times: survey.longest,
                 part: survey.longest / side,
             };
-            effort.see(survey.strained, longest, contacts, None);
+            let seen = Seen {
+                strained: survey.strained,
+                longest,
+                granted: !grant.is_empty(),
+                is_mesh: false,
+            };
+            effort.see(seen, contacts);
         } else {
             *effort = Effort::default();
         }
+        grant.renew(Threads::Sheet(*lattice), position, seconds, *effort);
         if !survey.squeezed {
             return;
         }
@@ -87,11 +95,17 @@ pub(crate) fn calm(
                 times: far.sqrt(),
                 part: farthest.sqrt() / fabric.size(),
             };
-            effort.see(part, longest, contacts, Some(!grant.is_empty()));
+            let seen = Seen {
+                strained: part,
+                longest,
+                granted: !grant.is_empty(),
+                is_mesh: true,
+            };
+            effort.see(seen, contacts);
         } else {
             *effort = Effort::default();
         }
-        grant.renew(fabric, position, seconds, *effort);
+        grant.renew(Threads::Mesh(fabric), position, seconds, *effort);
         if !squeezed {
             return;
         }
@@ -122,6 +136,7 @@ fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]
         normal: None,
         pressed: None,
         give: Give::default(),
+        lengths: None,
     }
 }
 

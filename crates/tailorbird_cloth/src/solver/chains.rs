@@ -126,8 +126,10 @@ impl Pass<'_> {
             inv_mass,
             contacts,
             effort,
+            grant,
             ..
         } = particles;
+        let granted = grant.largest();
         let sheet = Sheet {
             columns,
             rows,
@@ -137,7 +139,8 @@ impl Pass<'_> {
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
-            give: self.give(*effort, 0.0, contacts.any),
+            give: self.give(*effort, granted, contacts.any),
+            lengths: grant.sheet(columns * rows),
         };
         (sheet, SharedPoints::new(previous_position))
     }
@@ -281,6 +284,7 @@ pub(crate) fn integrate(
                 normal: None,
                 pressed: None,
                 give: Give::default(),
+                lengths: None,
             },
             previous: SharedPoints::new(previous_position),
             lost: SharedPoints::new(lost_displacement),

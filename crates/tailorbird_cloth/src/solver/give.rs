@@ -8,7 +8,7 @@ use super::{
         recovery::Recovery,
     },
 };
-use crate::{effort::Effort, topology::fabric::Fabric};
+use crate::effort::Effort;
 
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;
@@ -22,14 +22,32 @@ const TETHER_RATE: f32 = 0.5;
 /// How many times as fast it does so while the cloth settles [-].
 const SETTLING: f32 = 30.0;
 
-/// The compliance of the lines of a strained sheet, relative to what their particles resist with [-].
-const COMPLIANCE: f32 = 0.02;
+/// How soft strained lines get.
+struct Softness {
+    /// The largest compliance, relative to what their particles resist with [-].
+    most: f32,
+    /// κ of what hangs, times this, is the strain that it may cost [-].
+    load: f32,
+    /// They are that soft where so much is granted [-].
+    granted: f32,
+}
 
-/// κ of what hangs, times this, is the strain that it may cost to give way [-].
-const LOAD: f32 = 0.015;
+/// What a body pushes out of the plane of a sheet contradicts rows and columns the more the farther it does.
+const SHEET: Softness = Softness {
+    most: 0.15,
+    load: 0.03,
+    granted: 0.2,
+};
 
-/// Where this is granted, chains are as soft as they get [-].
-const SOFT: f32 = 0.02;
+/// The chains of a mesh end anywhere, and contradict one another wherever more is asked for than they have.
+const MESH: Softness = Softness {
+    most: 1.0,
+    load: 0.015,
+    granted: 0.02,
+};
+
+/// What strained lines pull with at most where something touches the cloth, κ = 4 w |μ| [-].
+const PULL: f32 = 5.0;
 
 impl Pass<'_> {
     /// How what is farther from a pin than it reaches comes back; none where it does so at once.
@@ -47,37 +65,35 @@ impl Pass<'_> {
         })
     }
 
-    /// How far chains give way, where the largest strain that a mesh is granted is this.
+    /// How far lines give way, where the largest strain that is granted is this.
     pub(super) fn give(&self, effort: Effort, granted: f32, touches: bool) -> Give {
         if !effort.recovers {
             return Give::default();
         }
-        match &self.topology.fabric {
-            None => Give {
-                compliance: COMPLIANCE,
-                pull: if touches { LARGEST_KAPPA } else { f32::MAX },
-                push: LARGEST_KAPPA,
-            },
-            Some(fabric) => Give {
-                compliance: self.compliance(fabric, granted),
-                push: LARGEST_KAPPA,
-                ..Give::default()
-            },
+        Give {
+            compliance: self.compliance(granted),
+            pull: if touches { PULL } else { f32::MAX },
+            push: LARGEST_KAPPA,
         }
     }
 
-    /// The compliance of the chains of a mesh that is strained, relative to what its particles resist with [-].
+    /// The compliance of strained lines, relative to what their particles resist with [-].
     ///
-    /// They end anywhere, and there pull with all their tension at what bears less: the softer they are, the more evenly is shared what
-    /// has not been granted. Its own weight stretches the mesh by no more than a part of what counts as strained.
-    fn compliance(&self, fabric: &Fabric, granted: f32) -> f32 {
-        let count = (fabric.particles() as f32).sqrt().max(1.0);
+    /// The softer they are, the more evenly is shared what has not been granted: a chain pulls with all its tension at what bears less. The
+    /// own weight stretches a cloth by no more than a part of what counts as strained.
+    fn compliance(&self, granted: f32) -> f32 {
+        let count = (self.topology.particles() as f32).sqrt().max(1.0);
         let size = self.size().max(SMALLEST);
         let spacing = size / count;
         // κ = 4 h² T/(m L) of what hangs by its upper edge.
         let kappa = 4.0 * self.seconds * self.seconds * self.gravity.max(1.0) * size;
-        let least = LOAD * spacing * spacing / kappa;
-        let soft = least.min(1.0) * (granted / SOFT).min(1.0);
+        let softness = if self.topology.fabric.is_some() {
+            MESH
+        } else {
+            SHEET
+        };
+        let most = (softness.load * spacing * spacing / kappa).min(softness.most);
+        let soft = most * (granted / softness.granted).min(1.0);
         soft.max(Give::default().compliance)
     }
 }

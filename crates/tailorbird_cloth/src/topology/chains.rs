@@ -24,6 +24,9 @@ const MOST_COVERS: usize = 64;
 /// In [`Chains::particle`]: no particle.
 pub const NONE: u32 = u32::MAX;
 
+/// In [`ChainBatch::closing`]: no ring.
+pub const OPEN: u32 = u32::MAX;
+
 /// Up to [`LANES`] chains of similar length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainBatch {
@@ -31,6 +34,8 @@ pub struct ChainBatch {
     pub slots: Range<usize>,
     /// Particles along the longest of them, at least 2.
     pub length: usize,
+    /// For each lane the edge that closes a ring, whose last particle is its first one, or [`OPEN`]; none where all are open.
+    pub closing: Option<[u32; LANES]>,
 }
 
 /// Batches that share no particle and can be solved in any order.
@@ -42,7 +47,8 @@ pub struct ChainPass {
     pub batches: Range<usize>,
 }
 
-/// The edges along warp and weft as chains, every edge in one of them.
+/// The edges along warp and weft as chains, every edge in one of them; what goes round is a ring, whose last link is its first particle once
+/// more.
 ///
 /// Slot `batch.slots.start + k * LANES + lane` is the `k`-th link of a chain.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -141,7 +147,11 @@ impl Chains {
             self.rest_length.resize(end, 0.0);
             self.scale.resize(end, 0.0);
             self.along_warp.resize(end, 0.0);
+            let mut closing = [OPEN; LANES];
             for (lane, &(chain, reversed)) in batch.lanes.iter().enumerate() {
+                if cover.is_ring(chain) {
+                    closing[lane] = cover.particles(chain).len() as u32 - 2;
+                }
                 for (k, (particle, edge)) in cover.links(chain, reversed).enumerate() {
                     let slot = start + k * LANES + lane;
                     self.particle[slot] = number[particle as usize];
@@ -156,6 +166,7 @@ impl Chains {
             self.batches.push(ChainBatch {
                 slots: start..end,
                 length: batch.length,
+                closing: (closing != [OPEN; LANES]).then_some(closing),
             });
         }
         self.passes.push(ChainPass {

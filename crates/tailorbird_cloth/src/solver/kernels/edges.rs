@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, prelude::*};
 
-use super::lanes::WIDEST;
+use super::lanes::{Shared, WIDEST};
 
 /// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +103,40 @@ impl<S: Simd> Edges<S> for MeshLines<'_> {
         Edge {
             l2,
             alpha: load(self.scale) * self.stretch * l2,
+        }
+    }
+}
+
+/// How long the edges of lines side by side are to be \[m\].
+#[derive(Clone, Copy)]
+pub(crate) struct LineLengths<'a> {
+    pub lengths: Shared<'a>,
+    /// Where that of the first edge of the first lane is.
+    pub at: usize,
+    /// From one edge of a line to the next.
+    pub stride: usize,
+}
+
+/// Edges of a sheet that are not to be as long as at rest.
+#[derive(Clone, Copy)]
+pub(crate) struct SheetLines<'a, S: Simd> {
+    /// At rest.
+    pub edge: Edge<S>,
+    pub lengths: LineLengths<'a>,
+}
+
+impl<S: Simd> Edges<S> for SheetLines<'_, S> {
+    #[inline(always)]
+    fn at(self, simd: S, k: usize) -> Edge<S> {
+        let LineLengths {
+            lengths,
+            at,
+            stride,
+        } = self.lengths;
+        let length = lengths.load(simd, at + k * stride);
+        Edge {
+            l2: length * length,
+            ..self.edge
         }
     }
 }

@@ -8,6 +8,7 @@ use std::ops::Range;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
+    edges::{LineLengths, SheetLines},
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
     line::{self, Edge, FREE, Give, LineStiffness, Lines, PRESSED, TOUCHING, Whole},
     tile::Tile,
@@ -26,6 +27,19 @@ pub(crate) struct Sheet<'a> {
     pub pressed: Option<Shared<'a>>,
     /// How far the fabric gives way.
     pub give: Give,
+    /// How long the edges are to be where that differs; not where bodies are carried.
+    pub lengths: Option<Lengths<'a>>,
+}
+
+/// How long the edges of a sheet are to be, each at its first particle \[m\].
+#[derive(Clone, Copy)]
+pub(crate) struct Lengths<'a> {
+    /// Those along rows: to the next particle.
+    pub rows: Shared<'a>,
+    /// Those along columns: to the particle of the next row.
+    pub columns: Shared<'a>,
+    /// The diagonals of the cell between both.
+    pub diagonals: Shared<'a>,
 }
 
 impl Sheet<'_> {
@@ -41,7 +55,8 @@ impl Sheet<'_> {
             points(self.position)
                 && self.inv_mass.len() == n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n),
+                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.lengths.is_none_or(|lengths| lengths.are_of(n)),
             "a sheet of {} x {} particles",
             self.columns,
             self.rows
@@ -49,8 +64,20 @@ impl Sheet<'_> {
     }
 }
 
-/// Calls a kernel with two instruction sets alone: sheets that carry bodies are few, and each takes long to compile.
-macro_rules! for_bodies {
+impl Lengths<'_> {
+    #[inline(always)]
+    fn are_of(&self, n: usize) -> bool {
+        [self.rows, self.columns, self.diagonals].map(Shared::len) == [n; 3]
+    }
+}
+
+/// What is special about a sheet: nothing, that it carries bodies, that its edges are not as long as at rest.
+const PLAIN: u8 = 0;
+const BODIES: u8 = 1;
+const GRANTED: u8 = 2;
+
+/// Calls a kernel with two instruction sets alone: sheets that are special are few, and each takes long to compile.
+macro_rules! for_few {
     ($level:expr, $simd:ident => $do:expr) => {{
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let level = $level.as_avx2().map_or(Level::fallback(), Level::Avx2);
@@ -74,7 +101,7 @@ macro_rules! for_bodies {
         }
     }};
 }
-pub(super) use for_bodies;
+pub(super) use for_few;
 
 /// Solves each column of a range.
 pub(crate) fn solve_columns(
@@ -86,15 +113,17 @@ pub(crate) fn solve_columns(
     sheet.check();
     with_scratch(sheet.rows * WIDEST * 13, |scratch| {
         if sheet.pressed.is_some() {
-            for_bodies!(level, simd => solve_columns_with::<_, true>(simd, sheet, stiffness, columns, scratch));
+            for_few!(level, simd => solve_columns_with::<_, BODIES>(simd, sheet, stiffness, columns, scratch));
+        } else if sheet.lengths.is_some() {
+            for_few!(level, simd => solve_columns_with::<_, GRANTED>(simd, sheet, stiffness, columns, scratch));
         } else {
-            dispatch!(level, simd => solve_columns_with::<_, false>(simd, sheet, stiffness, columns, scratch));
+            dispatch!(level, simd => solve_columns_with::<_, PLAIN>(simd, sheet, stiffness, columns, scratch));
         }
     });
 }
 
 #[inline(always)]
-fn solve_columns_with<S: Simd, const BODIES: bool>(
+fn solve_columns_with<S: Simd, const KIND: u8>(
     simd: S,
     sheet: Sheet,
     stiffness: LineStiffness,
@@ -120,7 +149,22 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
     };
     let of_lines = |first| stiffness.of_lines(simd, first, sheet.columns);
     while lines.offset + n <= columns.end {
-        solve_block::<S, BODIES>(simd, lines, of_lines(lines.offset), contact, factors);
+        let lengths = sheet
+            .lengths
+            .map_or(block.pressed, |lengths| lengths.columns);
+        let lengths = LineLengths {
+            lengths,
+            at: lines.offset,
+            stride: sheet.columns,
+        };
+        solve_block::<S, KIND>(
+            simd,
+            lines,
+            of_lines(lines.offset),
+            lengths,
+            contact,
+            factors,
+        );
         lines.offset += n;
     }
     let count = columns.end - lines.offset;
@@ -138,16 +182,21 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
             let normal: V3<S> = normal.load_at(simd, window, from);
             block.normal.store(k * n, normal);
         }
-        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+        if let (true, Some(pressed)) = (KIND == BODIES, sheet.pressed) {
             let sum = pressed.load_at(simd, window, from);
             block.pressed.store::<S>(k * n, sum);
         }
+        if let (true, Some(lengths)) = (KIND == GRANTED, sheet.lengths) {
+            let length = lengths.columns.load_at(simd, window, from);
+            block.pressed.store::<S>(k * n, length);
+        }
     }
     let stiffness = of_lines(lines.offset);
-    solve_block::<S, BODIES>(
+    solve_block::<S, KIND>(
         simd,
         block.lines(m, n, sheet.give),
         stiffness,
+        block.lengths(n),
         contact,
         factors,
     );
@@ -155,7 +204,7 @@ fn solve_columns_with<S: Simd, const BODIES: bool>(
         let p: V3<S> = block.position.load(simd, k * n);
         let to = lines.offset + k * sheet.columns;
         sheet.position.store_at(simd, window, to, p);
-        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+        if let (true, Some(pressed)) = (KIND == BODIES, sheet.pressed) {
             let sum = block.pressed.load(simd, k * n);
             pressed.store_at::<S>(simd, window, to, sum);
         }
@@ -167,15 +216,17 @@ pub(crate) fn solve_rows(level: Level, sheet: Sheet, stiffness: LineStiffness, r
     sheet.check();
     with_scratch(sheet.columns * WIDEST * 13, |scratch| {
         if sheet.pressed.is_some() {
-            for_bodies!(level, simd => solve_rows_with::<_, true>(simd, sheet, stiffness, rows, scratch));
+            for_few!(level, simd => solve_rows_with::<_, BODIES>(simd, sheet, stiffness, rows, scratch));
+        } else if sheet.lengths.is_some() {
+            for_few!(level, simd => solve_rows_with::<_, GRANTED>(simd, sheet, stiffness, rows, scratch));
         } else {
-            dispatch!(level, simd => solve_rows_with::<_, false>(simd, sheet, stiffness, rows, scratch));
+            dispatch!(level, simd => solve_rows_with::<_, PLAIN>(simd, sheet, stiffness, rows, scratch));
         }
     });
 }
 
 #[inline(always)]
-fn solve_rows_with<S: Simd, const BODIES: bool>(
+fn solve_rows_with<S: Simd, const KIND: u8>(
     simd: S,
     sheet: Sheet,
     stiffness: LineStiffness,
@@ -203,21 +254,25 @@ fn solve_rows_with<S: Simd, const BODIES: bool>(
             tile.load(simd, normal.y, block.normal.y);
             tile.load(simd, normal.z, block.normal.z);
         }
-        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+        if let (true, Some(pressed)) = (KIND == BODIES, sheet.pressed) {
             tile.load(simd, pressed, block.pressed);
         }
+        if let (true, Some(lengths)) = (KIND == GRANTED, sheet.lengths) {
+            tile.load(simd, lengths.rows, block.pressed);
+        }
         let stiffness = stiffness.of_lines(simd, row, sheet.rows);
-        solve_block::<S, BODIES>(
+        solve_block::<S, KIND>(
             simd,
             block.lines(m, n, sheet.give),
             stiffness,
+            block.lengths(n),
             contact,
             factors,
         );
         tile.store(simd, block.position.x, sheet.position.x);
         tile.store(simd, block.position.y, sheet.position.y);
         tile.store(simd, block.position.z, sheet.position.z);
-        if let (true, Some(pressed)) = (BODIES, sheet.pressed) {
+        if let (true, Some(pressed)) = (KIND == BODIES, sheet.pressed) {
             tile.store(simd, block.pressed, pressed);
         }
         row += tile.rows;
@@ -225,18 +280,26 @@ fn solve_rows_with<S: Simd, const BODIES: bool>(
 }
 
 #[inline(always)]
-fn solve_block<S: Simd, const BODIES: bool>(
+fn solve_block<S: Simd, const KIND: u8>(
     simd: S,
     lines: Lines,
     (edge, whole): (Edge<S>, Whole<S>),
+    lengths: LineLengths,
     contact: bool,
     factors: Shared,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
-            if BODIES {
+            if KIND == BODIES {
                 line::solve::<S, _, true, PRESSED>(simd, lines, edge, whole, factors);
+            } else if KIND == GRANTED {
+                let edges = SheetLines { edge, lengths };
+                if contact {
+                    line::solve::<S, _, true, TOUCHING>(simd, lines, edges, whole, factors);
+                } else {
+                    line::solve::<S, _, true, FREE>(simd, lines, edges, whole, factors);
+                }
             } else if contact {
                 line::solve::<S, _, true, TOUCHING>(simd, lines, edge, whole, factors);
             } else {
@@ -251,6 +314,7 @@ pub(super) struct Block<'a> {
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
     pub normal: SharedPoints<'a>,
+    /// Of the lines of a sheet whose edges are not as long as at rest, which carries no bodies, those lengths.
     pub pressed: Shared<'a>,
     pub shared: SharedPoints<'a>,
 }
@@ -276,6 +340,15 @@ impl<'a> Block<'a> {
             inv_mass: next(),
             pressed: next(),
             shared,
+        }
+    }
+
+    #[inline(always)]
+    fn lengths(&self, width: usize) -> LineLengths<'a> {
+        LineLengths {
+            lengths: self.pressed,
+            at: 0,
+            stride: width,
         }
     }
 

@@ -35,7 +35,8 @@ pub use super::edges::LineStiffness;
 pub(crate) use super::edges::{Edge, Edges, MeshLines, Whole};
 use super::{
     lanes::{Factor, Shared, SharedPoints, V3},
-    share::share,
+    row::{beside, own},
+    share::{Bounds, share},
 };
 
 /// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
@@ -43,7 +44,7 @@ pub(super) const NO_MASS: f32 = 1e-30;
 
 /// The least diagonal, as a part of (w_k + w_{k+1}) L²: two particles in contact one above the other cannot be moved along
 /// their edge.
-const LEAST_PIVOT: f32 = 0.05;
+pub(super) const LEAST_PIVOT: f32 = 0.05;
 
 /// The least α̃_k L_k², as a part of (w_k + w_{k+1}) L²: the tension of what is taut and straight, such as a row between two
 /// pins, would have no bounds else, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet
@@ -174,16 +175,17 @@ pub(crate) fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
     for e in inner..lines.len - 1 {
         sweep.advance::<BEND, CONTACT, false>(e);
     }
-    let shared = if lines.give.pull.min(lines.give.push) < f32::MAX {
-        substitute::<S, E, CONTACT, true>(simd, lines, edges, factors, bears)
+    let bounds = Bounds::new(bears, lines.give);
+    let taut = if bounds.gives() {
+        substitute::<S, E, CONTACT, true>(simd, lines, edges, factors, bounds)
     } else {
-        substitute::<S, E, CONTACT, false>(simd, lines, edges, factors, bears)
+        substitute::<S, E, CONTACT, false>(simd, lines, edges, factors, bounds)
     };
-    if CONTACT != PRESSED && !shared.is_empty() {
+    if CONTACT != PRESSED && !taut.is_empty() {
         // Apart, so that the registers are those of the lines.
         simd.vectorize(
             #[inline(always)]
-            || share::<S, CONTACT>(simd, lines, factors, shared),
+            || share::<S, CONTACT>(simd, lines, factors, taut),
         );
     }
 }
@@ -250,25 +252,16 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
             (s.c, s.w_c) = (lines.particle(simd, e + 2), lines.weight(simd, e + 2));
         }
 
-        let Edge { l2, alpha } = s.edges.at(simd, e);
-        let least_w = S::f32s::splat(simd, NO_MASS);
-        let quarter = l2 * 0.25;
         let d = s.b - s.a;
-        let q = d.dot(d);
-        let w = s.w_a + s.w_b;
-        let stretch = alpha.max(w * (l2 * lines.give.compliance));
-        let mut diagonal = w * q.max(quarter) + (stretch + least_w);
-        let mut dd = s.d.dot(d);
-        if CONTACT != FREE {
-            let n_b = lines.normal(simd, e + 1);
-            let (along_a, along_b) = (s.n_a.dot(d), n_b.dot(d));
-            diagonal = diagonal - s.w_a * along_a * along_a - s.w_b * along_b * along_b;
-            diagonal = diagonal.max(w * (l2 * LEAST_PIVOT) + least_w);
-            dd -= s.n_a.dot(s.d) * along_a;
-            s.n_a = n_b;
-        }
-        let beside = s.w_a * dd;
-        let rhs = ((l2 - q) * 0.5).min(quarter);
+        let n_b = if CONTACT == FREE {
+            s.n_a
+        } else {
+            lines.normal(simd, e + 1)
+        };
+        let (edge, w, n) = (s.edges.at(simd, e), [s.w_a, s.w_b], [s.n_a, n_b]);
+        let [diagonal, rhs] = own::<S, CONTACT>(simd, lines.give, edge, d, w, n);
+        let beside = beside::<S, CONTACT>(s.w_a, s.d, d, s.n_a);
+        s.n_a = n_b;
         // −beside is the off-diagonal of the edges e − 1 and e. What waits for the division before is as short as can be.
         let pivot = diagonal - beside * beside * s.inv_pivot;
         let inv_pivot = S::f32s::splat(simd, 1.0) / pivot;
@@ -285,60 +278,40 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
 
 /// Substitutes back: μ_e = g_e + factor_{e+1} μ_{e+1}; what moves particle e + 1 is w (μ_e d_e − μ_{e+1} d_{e+1}).
 ///
-/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of its ends half ([`Whole::bears`]):
-/// with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave across the line is pulled back by more
-/// than κ of itself. Returns the edges among which there is tension beyond that, which [`share`] wants in place of the multipliers.
+/// Returns the edges among which there is tension beyond what a substep stands, which [`share`] wants in place of the multipliers.
 #[inline(always)]
 fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     simd: S,
     lines: Lines,
     edges: E,
     factors: Shared,
-    bears: S::f32s,
+    bounds: Bounds<S>,
 ) -> Range<usize> {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
-    let half = S::f32s::splat(simd, 0.5);
-    let [borne, pulls, pushes] =
-        [LARGEST_KAPPA, lines.give.pull, lines.give.push].map(|kappa| bears * kappa);
     let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
-    let mut shared = 0..0;
+    let mut taut = 0..0;
     for e in (0..m - 1).rev() {
         let near = lines.bent.load(simd, e * lanes);
         let slot = 2 * e * lanes;
         let mut mu = factors.load(simd, slot + lanes) + factor * mu_far;
         factor = factors.load(simd, slot);
         let d = far - near;
-        if GIVES {
-            mu = mu.min(pushes).max(zero - pulls);
-        }
+        mu = bounds.given::<GIVES>(mu);
         mu_far = mu;
-        // Bodies that a cloth carries have substeps enough for their weight.
-        if CONTACT != PRESSED && mu.simd_lt(zero - borne).any_true() {
-            let beyond = (zero - mu - borne).max(zero);
-            // It will act on what is as long as at rest.
-            let l2 = edges.at(simd, e).l2.max(S::f32s::splat(simd, NO_MASS));
-            let longer = half + d.dot(d) * (half * (S::f32s::splat(simd, 1.0) / l2));
-            // None in between has any.
-            for k in e + 1..shared.start {
-                factors.store::<S>((2 * k + 1) * lanes, zero);
-            }
-            shared = e..shared.end.max(e + 1);
-            factors.store::<S>(slot + lanes, beyond * longer.min(half * 4.0));
-            mu = mu.max(zero - borne);
-        }
+        mu = bounds.borne::<E, CONTACT>(simd, edges, factors, &mut taut, e, mu, d);
         let push = Factor(mu) * d;
         apply::<S, CONTACT>(simd, lines, lines.at(e + 1), far, push - pull);
         (far, pull) = (near, push);
     }
     apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
-    shared
+    taut
 }
 
 /// Moves particles by what pushes them, along the surface alone where they are in contact.
 #[inline(always)]
-fn apply<S: Simd, const CONTACT: u8>(
+pub(super) fn apply<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     i: usize,

@@ -11,10 +11,11 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
-    lattice::{Block, for_bodies},
-    line::{self, FREE, Give, MeshLines, NO_MASS, PRESSED, TOUCHING, Whole},
+    lattice::{Block, for_few},
+    line::{self, FREE, Give, Lines, MeshLines, NO_MASS, PRESSED, TOUCHING, Whole},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
+    ring,
 };
 use crate::{
     points::Points,
@@ -133,7 +134,7 @@ pub(crate) fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Rang
     with_scratch(longest * WIDEST * 13, |scratch| {
         for batch in batches {
             if mesh.pressed.is_some() {
-                for_bodies!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
+                for_few!(level, simd => solve_batch::<_, true>(simd, mesh, stretch, batch, scratch));
             } else {
                 dispatch!(level, simd => solve_batch::<_, false>(simd, mesh, stretch, batch, scratch));
             }
@@ -189,12 +190,13 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             bears: quarter / lightest,
         };
         let lines = block.lines(m, n, mesh.give);
+        let closing = batch.closing.as_ref().map(|all| &all[first..first + n]);
         if BODIES {
-            line::solve::<S, _, false, PRESSED>(simd, lines, edges, whole, factors);
+            solve_lines::<S, PRESSED>(simd, lines, edges, whole, closing, factors);
         } else if mesh.normal.is_some() {
-            line::solve::<S, _, false, TOUCHING>(simd, lines, edges, whole, factors);
+            solve_lines::<S, TOUCHING>(simd, lines, edges, whole, closing, factors);
         } else {
-            line::solve::<S, _, false, FREE>(simd, lines, edges, whole, factors);
+            solve_lines::<S, FREE>(simd, lines, edges, whole, closing, factors);
         }
         for k in 0..m {
             let moved: V3<S> = block.position.load(simd, k * n);
@@ -204,6 +206,27 @@ fn solve_batch<S: Simd, const BODIES: bool>(
                 lanes.store::<S>(pressed, block.pressed.load(simd, k * n));
             }
         }
+    }
+}
+
+/// Solves open chains, or rings and open chains.
+#[inline(always)]
+fn solve_lines<S: Simd, const CONTACT: u8>(
+    simd: S,
+    lines: Lines,
+    edges: MeshLines,
+    whole: Whole<S>,
+    closing: Option<&[u32]>,
+    factors: Shared,
+) {
+    if let Some(closing) = closing {
+        // Apart: few meshes have any.
+        simd.vectorize(
+            #[inline(always)]
+            || ring::solve::<S, _, CONTACT>(simd, lines, edges, whole.bears, closing, factors),
+        );
+    } else {
+        line::solve::<S, _, false, CONTACT>(simd, lines, edges, whole, factors);
     }
 }
 

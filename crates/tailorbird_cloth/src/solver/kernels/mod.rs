@@ -30,6 +30,10 @@ pub mod range;
 pub(crate) mod recovery;
 pub mod rigid;
 pub mod rigid_motion;
+pub(crate) mod ring;
+#[cfg(test)]
+mod ring_tests;
+pub(crate) mod row;
 pub(crate) mod share;
 pub(crate) mod shear;
 pub mod solid;

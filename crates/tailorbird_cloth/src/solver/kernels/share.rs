@@ -23,9 +23,87 @@ use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
+    edges::Edges,
     lanes::{Factor, Shared, V3},
-    line::{FREE, Lines},
+    line::{FREE, Give, LARGEST_KAPPA, Lines, NO_MASS, PRESSED},
 };
+
+/// What multipliers are bounded by, |μ| \[kg\].
+///
+/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of its ends half
+/// ([`super::edges::Whole::bears`]): with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave across
+/// the line is pulled back by more than κ of itself.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds<S: Simd> {
+    give: Give,
+    /// What acts along edges as they lie.
+    borne: S::f32s,
+    /// What there is at all: pull, and push.
+    pulls: S::f32s,
+    pushes: S::f32s,
+}
+
+impl<S: Simd> Bounds<S> {
+    #[inline(always)]
+    pub fn new(bears: S::f32s, give: Give) -> Self {
+        let [borne, pulls, pushes] = [LARGEST_KAPPA, give.pull, give.push].map(|k| bears * k);
+        Self {
+            give,
+            borne,
+            pulls,
+            pushes,
+        }
+    }
+
+    /// Whether there are bounds of all there is.
+    #[inline(always)]
+    pub fn gives(self) -> bool {
+        self.give.pull.min(self.give.push) < f32::MAX
+    }
+
+    /// What there is of a multiplier.
+    #[inline(always)]
+    pub fn given<const GIVES: bool>(self, mu: S::f32s) -> S::f32s {
+        if GIVES {
+            mu.min(self.pushes).max(-self.pulls)
+        } else {
+            mu
+        }
+    }
+
+    /// What acts of the multiplier of the edge `e`, `d`, as it lies. What is beyond is noted in the second half of its slots of `factors`,
+    /// for [`share`], and `e` is added to the range of edges of which some have that. Edges come in falling order.
+    #[inline(always)]
+    pub fn borne<E: Edges<S>, const CONTACT: u8>(
+        self,
+        simd: S,
+        edges: E,
+        factors: Shared,
+        taut: &mut Range<usize>,
+        e: usize,
+        mu: S::f32s,
+        d: V3<S>,
+    ) -> S::f32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        // Bodies that a cloth carries have substeps enough for their weight.
+        if CONTACT == PRESSED || !mu.simd_lt(zero - self.borne).any_true() {
+            return mu;
+        }
+        let half = S::f32s::splat(simd, 0.5);
+        let slot = |k: usize| (2 * k + 1) * S::f32s::LEN;
+        let beyond = (zero - mu - self.borne).max(zero);
+        // It will act on what is as long as at rest.
+        let l2 = edges.at(simd, e).l2.max(S::f32s::splat(simd, NO_MASS));
+        let longer = half + d.dot(d) * (half * (S::f32s::splat(simd, 1.0) / l2));
+        // None in between has any.
+        for k in e + 1..taut.start {
+            factors.store::<S>(slot(k), zero);
+        }
+        *taut = e..taut.end.max(e + 1);
+        factors.store::<S>(slot(e), beyond * longer.min(half * 4.0));
+        mu.max(zero - self.borne)
+    }
+}
 
 /// Solves as many chains as a vector has lanes, whose X_k is in the second half of the slots of `factors` for a range of edges, and 0 for
 /// all others: run by run of edges of which any lane has some.

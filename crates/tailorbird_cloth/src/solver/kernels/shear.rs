@@ -73,7 +73,7 @@ fn diagonals<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>, r
     } else {
         (upper, lower + 1)
     };
-    let l2 = S::f32s::splat(simd, shear.rest_length * shear.rest_length);
+    let at_rest = S::f32s::splat(simd, shear.rest_length * shear.rest_length);
     let alpha = S::f32s::splat(simd, shear.alpha_tilde + 1e-30);
     let cells = 0..sheet.columns - 1;
     each_window(
@@ -85,6 +85,10 @@ fn diagonals<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>, r
             let p_b: V3<S> = sheet.position.load_at(simd, window, b);
             let w_a = sheet.inv_mass.load_at(simd, window, a);
             let w_b = sheet.inv_mass.load_at(simd, window, b);
+            let l2 = sheet.lengths.map_or(at_rest, |lengths| {
+                let length = lengths.diagonals.load_at(simd, window, upper);
+                length * length
+            });
             let d = p_b - p_a;
             let q = d.dot(d);
             let excess = q - l2;

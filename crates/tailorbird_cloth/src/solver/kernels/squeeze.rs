@@ -197,6 +197,7 @@ mod tests {
                         normal: None,
                         pressed: None,
                         give: Give::default(),
+                        lengths: None,
                     };
                     let whole = RigidMotion {
                         displacement: Vec3::Y,

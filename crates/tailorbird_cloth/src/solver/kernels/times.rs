@@ -131,6 +131,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         normal: None,
         pressed: None,
         give: Give::default(),
+        lengths: None,
     };
     let line = LineStiffness {
         rest_length: SPACING,
@@ -219,6 +220,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             normal: None,
             pressed: None,
             give: Give::default(),
+            lengths: None,
         },
         previous: particles.previous,
         lost: SharedPoints::new(&mut lost),

@@ -1,4 +1,4 @@
-//! Finds chains that share no particle.
+//! Finds chains and rings that share no particle.
 
 use bevy_math::Vec3;
 
@@ -10,7 +10,7 @@ const CONTINUES: f32 = 0.5;
 /// At a particle with more edges of a family than this none continues another.
 const FAN: usize = 16;
 
-/// Chains that share no particle.
+/// Chains that share no particle. Those that are rings end at the particle where they start.
 #[derive(Debug, Default)]
 pub(super) struct Cover {
     /// Where each chain starts in `particles` and `edges`; one more than there are chains.
@@ -41,6 +41,11 @@ impl Cover {
 
     pub(super) fn particles(&self, chain: usize) -> &[u32] {
         &self.particles[self.starts[chain]..self.starts[chain + 1]]
+    }
+
+    pub(super) fn is_ring(&self, chain: usize) -> bool {
+        let particles = self.particles(chain);
+        particles.len() > 2 && particles.first() == particles.last()
     }
 
     /// The particles of a chain with the edge from each to the next.
@@ -102,6 +107,38 @@ impl Cover {
         }
     }
 
+    /// Adds a path that is a ring and touches no particle in `used`. Returns whether it is, and does not.
+    fn push_ring(&mut self, path: &Path, used: &mut [u32], pass: u32) -> bool {
+        let Some((last, particles)) = path.particles.split_last() else {
+            return false;
+        };
+        if particles.len() < 3 || particles.first() != Some(last) {
+            return false;
+        }
+        let marks: Vec<u32> = particles.iter().map(|i| used[*i as usize]).collect();
+        let mut free = 0;
+        for &i in particles {
+            if std::mem::replace(&mut used[i as usize], pass) == pass {
+                break;
+            }
+            free += 1;
+        }
+        if free < particles.len() {
+            for (&i, mark) in particles.iter().zip(marks).take(free) {
+                used[i as usize] = mark;
+            }
+            return false;
+        }
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        self.particles.extend(&path.particles);
+        self.edges.extend(&path.edges);
+        self.edges.push(NONE);
+        self.starts.push(self.particles.len());
+        true
+    }
+
     /// Ends the chain that began at `start`; a particle alone is none.
     fn end(&mut self, start: usize, used: &mut [u32]) {
         match self.particles.len() - start {
@@ -140,7 +177,9 @@ pub(super) fn cover(
     let mut cover = Cover::default();
     edges.clear();
     for path in &paths {
-        cover.push(path, used, pass, edges);
+        if !cover.push_ring(path, used, pass) {
+            cover.push(path, used, pass, edges);
+        }
     }
     edges.sort_unstable();
     cover
@@ -169,7 +208,7 @@ fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
             half = next[(half ^ 1) as usize];
         }
         if half == start {
-            cut(&mut path, rest_positions);
+            turn(&mut path, rest_positions);
         }
         paths.push(path);
     }
@@ -223,9 +262,9 @@ fn continuations(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<u
     next
 }
 
-/// Turns a closed path so that it starts at the particle that lies furthest in a direction along no axis: the cuts of
-/// rings side by side come to lie side by side. The edge that is cut off is the one to the lower neighbour.
-fn cut(path: &mut Path, rest_positions: &[Vec3]) {
+/// Turns a closed path so that it starts at the particle that lies furthest in a direction along no axis: the starts of
+/// rings side by side come to lie side by side. Its last edge is the one from the lower neighbour.
+fn turn(path: &mut Path, rest_positions: &[Vec3]) {
     let height = |path: &Path, i: &usize| {
         let p = rest_positions[path.particles[*i] as usize];
         p.dot(Vec3::new(0.48, 0.71, 0.52))

@@ -51,19 +51,19 @@ pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
     )
 }
 
-/// Fills batches with chains of similar length, in the order given as far as that allows.
+/// Fills batches with chains of similar length, or rings, in the order given as far as that allows.
 fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch> {
     let mut batches: Vec<Batch> = Vec::new();
-    // The batches that still have room, with the length of their first chain.
-    let mut open: Vec<(usize, f32)> = Vec::new();
+    // The batches that still have room, with the length of their first chain, and whether it is a ring.
+    let mut open: Vec<(usize, f32, bool)> = Vec::new();
     for (chain, reversed) in chains {
         let length = cover.particles(chain).len();
         let fits = |like: f32| SIMILAR * like <= length as f32 && SIMILAR * length as f32 <= like;
         let place = open
             .iter()
-            .position(|(_, like)| fits(*like))
+            .position(|(_, like, ring)| fits(*like) && *ring == cover.is_ring(chain))
             .unwrap_or_else(|| {
-                open.push((batches.len(), length as f32));
+                open.push((batches.len(), length as f32, cover.is_ring(chain)));
                 batches.push(Batch::default());
                 open.len() - 1
             });
@@ -77,7 +77,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
 
     let mut rest: Vec<(usize, bool)> = open
         .iter()
-        .flat_map(|(batch, _)| std::mem::take(&mut batches[*batch].lanes))
+        .flat_map(|(batch, ..)| std::mem::take(&mut batches[*batch].lanes))
         .collect();
     rest.sort_by_key(|(chain, _)| std::cmp::Reverse(cover.particles(*chain).len()));
     batches.retain(|batch| !batch.lanes.is_empty());
@@ -97,19 +97,21 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
 /// For each storage number the given one: first the particles of the batches, then the others, each beside its neighbours.
 pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &Weave) -> Vec<u32> {
     let mut order = Vec::with_capacity(particles);
+    let mut number = vec![NONE; particles];
     for batch in batches {
         for k in 0..batch.length {
             for &(chain, reversed) in &batch.lanes {
                 let chain = cover.particles(chain);
                 if k < chain.len() {
-                    order.push(chain[if reversed { chain.len() - 1 - k } else { k }]);
+                    let particle = chain[if reversed { chain.len() - 1 - k } else { k }];
+                    // The last of a ring is its first.
+                    if number[particle as usize] == NONE {
+                        number[particle as usize] = order.len() as u32;
+                        order.push(particle);
+                    }
                 }
             }
         }
-    }
-    let mut number = vec![NONE; particles];
-    for (new, &old) in order.iter().enumerate() {
-        number[old as usize] = new as u32;
     }
     let mut beside = number.clone();
     for &[a, b] in &weave.ends {

@@ -15,13 +15,20 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    topology::{Topology, test_meshes::delaunay},
+    topology::{Topology, chains::ChainBatch, test_meshes::delaunay},
 };
 
 #[test]
 fn lines() {
     for size in SIZES {
-        for (contact, bodies) in [(false, false), (true, false), (true, true)] {
+        let kinds = [
+            (false, false, false),
+            (true, false, false),
+            (true, true, false),
+            (false, false, true),
+            (true, false, true),
+        ];
+        for (contact, bodies, granted) in kinds {
             for bend in [0.3, f32::INFINITY] {
                 let line = LineStiffness {
                     rest_length: 1.0,
@@ -30,7 +37,7 @@ fn lines() {
                     mass: 0.5,
                 };
                 let mut start = State::sheet(size);
-                start.bodies = bodies;
+                (start.bodies, start.granted) = (bodies, granted);
                 same(&start, |level, state, cuts| {
                     let columns = blocks(state.columns, cuts);
                     state.with_sheet(contact, |sheet| {
@@ -83,13 +90,15 @@ fn lines_tell_what_they_press() {
 #[test]
 fn diagonals() {
     for size in SIZES {
-        for rising_first in [false, true] {
+        for (rising_first, granted) in [(false, false), (true, false), (true, true)] {
             let shear = Shear {
                 rest_length: 1.4,
                 alpha_tilde: 0.5,
                 rising_first,
             };
-            same(&State::sheet(size), |level, state, cuts| {
+            let mut start = State::sheet(size);
+            start.granted = granted;
+            same(&start, |level, state, cuts| {
                 let rows = blocks(state.rows, cuts);
                 state.with_sheet(rising_first, |sheet| {
                     // The last block first: they do not depend on each other.
@@ -161,9 +170,38 @@ fn tethers() {
 #[test]
 fn chains_of_a_mesh() {
     let (positions, triangles) = delaunay(16, 5);
-    let shape = Cloth::mesh(positions, triangles.concat()).shape;
-    let topology = Topology::build(&shape, Vec3::ONE).expect("a mesh");
+    chains_of(Cloth::mesh(positions, triangles.concat()), false);
+}
+
+/// Tubes of different widths, each closed: rings of some lengths in one batch.
+#[test]
+fn rings_of_a_mesh() {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for (k, around) in [21_u32, 23, 24].into_iter().enumerate() {
+        let first = positions.len() as u32;
+        positions.extend((0..4 * around).map(|i| {
+            let angle = (i % around) as f32 / around as f32 * std::f32::consts::TAU;
+            Vec3::new(
+                angle.cos() + 3.0 * k as f32,
+                (i / around) as f32,
+                angle.sin(),
+            )
+        }));
+        let at = |c: u32, r: u32| first + r * around + c % around;
+        for i in 0..3 * around {
+            let (c, r) = (i % around, i / around);
+            let [a, b, d, e] = [at(c, r), at(c, r + 1), at(c + 1, r), at(c + 1, r + 1)];
+            triangles.extend([a, b, d, d, b, e]);
+        }
+    }
+    chains_of(Cloth::mesh(positions, triangles), true);
+}
+
+fn chains_of(cloth: Cloth, has_rings: bool) {
+    let topology = Topology::build(&cloth.shape, Vec3::ONE).expect("a mesh");
     let fabric = topology.fabric.as_ref().expect("no grid");
+    let closed = |batch: &ChainBatch| batch.closing.is_some();
+    assert_eq!(fabric.chains().batches.iter().any(closed), has_rings);
     let rest = topology.rest_positions.iter().map(|p| *p * 20.0);
     let start = State::new([topology.particles(), 1], rest);
     for (contact, bodies) in [(false, false), (true, false), (true, true)] {

@@ -8,7 +8,7 @@ use fearless_simd::Level;
 
 use super::{
     lanes::{Shared, SharedPoints, levels},
-    lattice::Sheet,
+    lattice::{Lengths, Sheet},
     line::Give,
     recovery::Recovery,
 };
@@ -33,8 +33,12 @@ struct State {
     normal: Points,
     depth: Numbers,
     pressed: Numbers,
+    /// How long edges are to be, along rows, along columns, across.
+    lengths: [Numbers; 3],
     /// Whether some particles carry parts of bodies.
     bodies: bool,
+    /// Whether edges are not to be as long as at rest.
+    granted: bool,
 }
 
 fn noise(len: usize, seed: u64, size: f32) -> Points {
@@ -94,7 +98,9 @@ impl State {
                 .map(|i| if i % 3 == 1 { 0.05 } else { 0.0 })
                 .collect(),
             pressed: (0..n).map(|_| 0.0).collect(),
+            lengths: [30, 31, 32].map(|seed| (0..n).map(|i| 1.0 + 0.5 * random(i, seed)).collect()),
             bodies: false,
+            granted: false,
         }
     }
 
@@ -108,6 +114,7 @@ impl State {
             least: 0.01,
             part: 0.05,
         };
+        let [rows, columns, diagonals] = self.lengths.each_mut().map(|all| Shared::new(all));
         let sheet = Sheet {
             columns: self.columns,
             rows: self.rows,
@@ -116,6 +123,11 @@ impl State {
             normal: contact.then(|| SharedPoints::new(&mut self.normal)),
             pressed: (contact && self.bodies).then(|| Shared::new(&mut self.pressed)),
             give: give(contact),
+            lengths: self.granted.then_some(Lengths {
+                rows,
+                columns,
+                diagonals,
+            }),
         };
         f(sheet, recovery);
     }
