@@ -48,15 +48,20 @@ pub(crate) const STRAIN: f32 = 0.03;
 /// A cloth of whose edges more than this part is strained is asked for more than the fabric has [-].
 const STRAINED: f32 = 0.05;
 
-/// What is strained stays so until fewer of its edges are than this part [-].
-const STILL_STRAINED: f32 = 0.01;
+/// What is strained stays so until fewer of its edges are than this part [-], and where something is inside of it, it has been granted much, or is
+/// a mesh, until fewer are than that. What is too short for its pins in some place alone moves as it likes elsewhere.
+const STILL_STRAINED: [f32; 2] = [0.03, 0.01];
 
 /// A single edge that is longer than the first of these times its length counts as well, and what is strained stays so until none is longer
-/// than the second [-]: anywhere, and where something touches it.
+/// than the second [-]: anywhere, and where something is inside of it, or touches a mesh, whose edges share less evenly what they bear at
+/// once.
 const LONG: [[f32; 2]; 2] = [[2.0, 1.5], [1.35, 1.2]];
 
 /// A single edge that is longer than this many times its length counts at once [-].
 const TORN: f32 = 8.0;
+
+/// What has been strained for so many steps is granted what it is asked for: what is put to its pins is whole before that.
+const LASTS: u32 = 6;
 
 /// Air, forces and a frame that are faster than this stretch cloth by themselves [m/s].
 const STORM: f32 = 5.0;
@@ -118,7 +123,7 @@ impl Effort {
     #[cfg(test)]
     pub fn asking(is_asked: bool) -> Self {
         Self {
-            steps: u32::from(is_asked),
+            steps: if is_asked { LASTS } else { 0 },
             is_asked,
             ..Self::default()
         }
@@ -142,6 +147,11 @@ impl Effort {
     /// Whether it is strained now.
     pub fn is_strained(self) -> bool {
         self.steps > 0
+    }
+
+    /// Whether it has been strained for more than a moment.
+    pub fn lasts(self) -> bool {
+        self.steps >= LASTS
     }
 
     /// Whether it recovers, or has just done so and touches nothing: what is farther from a pin than it reaches comes back slowly.
@@ -168,9 +178,10 @@ impl Effort {
         self.driven = 0.0;
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
-        let long = LONG[usize::from(contacts.any)];
+        let long = LONG[usize::from(contacts.overlaps || is_mesh && contacts.any)];
+        let still = STILL_STRAINED[usize::from(contacts.overlaps || granted || is_mesh)];
         let (most, long) = if self.recovers {
-            (STILL_STRAINED, long[1])
+            (still, long[1])
         } else {
             (STRAINED, long[0])
         };
@@ -257,7 +268,7 @@ pub(crate) struct Seen {
     /// The part of the edges that is longer than the fabric lets them be [-].
     pub strained: f32,
     pub longest: Longest,
-    /// Whether it has been granted anything.
+    /// Whether it has been granted much.
     pub granted: bool,
     /// Whether it is no sheet: its lines are short, and contradict one another.
     pub is_mesh: bool,

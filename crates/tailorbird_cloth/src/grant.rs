@@ -43,6 +43,9 @@ const ROUNDS: usize = 4;
 /// What is granted at most [-].
 const MOST: f32 = 1.0;
 
+/// More than this in the mean is much [-].
+const MUCH: f32 = 5e-3;
+
 /// Less than this is nothing [-].
 const LEAST: f32 = 1e-3;
 
@@ -60,8 +63,9 @@ pub(crate) enum Threads<'a> {
 pub(crate) struct Grant {
     /// For each particle the strain along warp and weft [-].
     strain: Vec<[f32; 2]>,
-    /// The largest of those [-].
+    /// The largest of those, and their mean [-].
     largest: f32,
+    mean: f32,
     /// For each slot of the chains how long its edge may be; of a sheet for each particle the edge to the next of its row \[m\].
     chains: Vec<f32>,
     /// The same for each spring across the threads; for each particle the diagonals of the cell beyond it.
@@ -123,14 +127,20 @@ impl Around {
 }
 
 impl Grant {
-    /// Nothing is granted.
-    pub fn is_empty(&self) -> bool {
-        self.strain.is_empty()
+    /// Whether so much is granted that the cloth would jump if it were taken back at once, and not in some place alone.
+    pub fn is_much(&self) -> bool {
+        self.mean > MUCH
     }
 
     /// The largest strain that is granted [-].
     pub fn largest(&self) -> f32 {
         self.largest
+    }
+
+    /// The strain that is granted, as a number for all of the cloth [-]: it if that is the same everywhere, and less where it is so in some
+    /// place alone.
+    pub fn overall(&self) -> f32 {
+        (self.mean * self.largest).sqrt()
     }
 
     /// How long the edges of the chains may be \[m\].
@@ -163,7 +173,7 @@ impl Grant {
     /// Nothing is granted any more.
     pub fn clear(&mut self) {
         self.strain.clear();
-        self.largest = 0.0;
+        (self.largest, self.mean) = (0.0, 0.0);
         self.trial = Trial::None;
         self.rescale();
     }
@@ -190,7 +200,7 @@ impl Grant {
         let n = threads.particles();
         if self.strain.len() != n {
             self.clear();
-            if !effort.is_asked {
+            if !effort.is_asked || !effort.lasts() {
                 return;
             }
             self.strain.resize(n, [0.0; 2]);
@@ -211,13 +221,17 @@ impl Grant {
         // Nobody needs it.
         let times = if effort.is_strained() { 1.0 } else { UNUSED };
         self.largest = 0.0;
+        let mut sum = 0.0;
         for (strain, asked) in self.strain.iter_mut().zip(&self.asked) {
             for (strain, asked) in strain.iter_mut().zip(asked) {
                 *strain += growth * (asked.min(MOST) - BORNE - *strain).max(0.0);
                 *strain = (*strain - times * taken_back(*strain) * seconds).max(0.0);
-                self.largest = self.largest.max(*strain);
             }
+            let [warp, weft] = *strain;
+            sum += warp.max(weft);
+            self.largest = self.largest.max(warp).max(weft);
         }
+        self.mean = sum / n as f32;
         if self.largest < LEAST {
             self.clear();
             return;

@@ -53,7 +53,7 @@ pub(crate) fn calm(
             let seen = Seen {
                 strained: survey.strained,
                 longest,
-                granted: !grant.is_empty(),
+                granted: grant.is_much(),
                 is_mesh: false,
             };
             effort.see(seen, contacts);
@@ -98,7 +98,7 @@ pub(crate) fn calm(
             let seen = Seen {
                 strained: part,
                 longest,
-                granted: !grant.is_empty(),
+                granted: grant.is_much(),
                 is_mesh: true,
             };
             effort.see(seen, contacts);

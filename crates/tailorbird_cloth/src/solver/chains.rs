@@ -129,7 +129,7 @@ impl Pass<'_> {
             grant,
             ..
         } = particles;
-        let granted = grant.largest();
+        let granted = grant.overall();
         let sheet = Sheet {
             columns,
             rows,

@@ -11,6 +11,7 @@ mod breaking;
 mod drawn;
 mod hand;
 mod motion;
+mod put_on;
 mod regressions;
 mod sleeping;
 mod springs;
