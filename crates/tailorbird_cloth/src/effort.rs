@@ -268,7 +268,7 @@ pub(crate) struct Seen {
     /// The part of the edges that is longer than the fabric lets them be [-].
     pub strained: f32,
     pub longest: Longest,
-    /// Whether it has been granted much.
+    /// Whether it has been granted so much that it is slowed until that is taken back.
     pub granted: bool,
     /// Whether it is no sheet: its lines are short, and contradict one another.
     pub is_mesh: bool,

@@ -127,7 +127,12 @@ impl Around {
 }
 
 impl Grant {
-    /// Whether so much is granted that the cloth would jump if it were taken back at once, and not in some place alone.
+    /// Nothing is granted.
+    pub fn is_empty(&self) -> bool {
+        self.strain.is_empty()
+    }
+
+    /// Whether much is granted, and not in some place alone.
     pub fn is_much(&self) -> bool {
         self.mean > MUCH
     }
@@ -200,7 +205,9 @@ impl Grant {
         let n = threads.particles();
         if self.strain.len() != n {
             self.clear();
-            if !effort.is_asked || !effort.lasts() {
+            // The chains of a mesh contradict one another at once.
+            let lasts = effort.lasts() || matches!(threads, Threads::Mesh(_));
+            if !effort.is_asked || !lasts {
                 return;
             }
             self.strain.resize(n, [0.0; 2]);

@@ -184,11 +184,8 @@ fn what_overlaps_comes_out_slowly() {
                 let scene =
                     format!("overlap --depth {depth} --body {body} --mesh {mesh} --size 33");
                 // What falls off the body is as fast as that.
-                // An irregular mesh may hang on a corner of the box for some seconds.
-                holds(
-                    &scene,
-                    &[("speed_peak", 12.0), ("stretch_max", of(mesh, [0.5, 3.0]))],
-                );
+                // It may hang on a corner of the box for some seconds.
+                holds(&scene, &[("speed_peak", 12.0), ("stretch_max", 3.0)]);
             }
             let ground = format!("overlap --depth {depth} --body ground --mesh {mesh} --size 33");
             holds(&ground, &[("speed_peak", 1.1), ("speed_max", 0.01)]);

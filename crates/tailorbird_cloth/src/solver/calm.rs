@@ -98,7 +98,7 @@ pub(crate) fn calm(
             let seen = Seen {
                 strained: part,
                 longest,
-                granted: grant.is_much(),
+                granted: !grant.is_empty(),
                 is_mesh: true,
             };
             effort.see(seen, contacts);

@@ -63,7 +63,7 @@ impl Pass<'_> {
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
             rest_length: grant.chains(fabric.chains()),
-            give: self.give(*effort, grant.overall(), contacts.any),
+            give: self.give(*effort, grant.largest(), contacts.any),
         };
         let passes = &fabric.chains().passes;
         for k in order {
