@@ -20,6 +20,8 @@ pub(crate) struct Effort {
     steps: u32,
     /// Whether it is asked for more than the fabric has.
     pub is_asked: bool,
+    /// Whether it has been so for more than a moment.
+    is_told: bool,
     /// Whether the fabric gives way, and moves slowly: it is, or has not recovered from it.
     pub recovers: bool,
     /// For how many steps it goes on to settle after it has recovered.
@@ -62,6 +64,9 @@ const TORN: f32 = 8.0;
 
 /// What has been strained for so many steps is granted what it is asked for: what is put to its pins is whole before that.
 const LASTS: u32 = 6;
+
+/// And is told, and logged, after so many.
+const TOLD: u32 = 30;
 
 /// Air, forces and a frame that are faster than this stretch cloth by themselves [m/s].
 const STORM: f32 = 5.0;
@@ -116,7 +121,7 @@ const LEAST: f32 = 0.02;
 impl Effort {
     /// Which part of the edges is strained and stays so [-].
     pub fn unmet(self) -> f32 {
-        if self.recovers { self.strained } else { 0.0 }
+        if self.is_told { self.strained } else { 0.0 }
     }
 
     /// Whether a mesh is asked for more than it has.
@@ -204,6 +209,7 @@ impl Effort {
             self.settles.saturating_sub(1)
         };
         self.is_asked = self.recovers && !blown;
+        self.is_told = self.recovers && (self.is_told || self.steps >= TOLD);
         let stormy = blown && strained > STRETCHED && !self.recovers;
         let struck = self.is_strained() && self.struck > STRUCK && !contacts.overlaps;
         self.struck = 0.0;

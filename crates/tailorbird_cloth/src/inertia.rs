@@ -112,8 +112,8 @@ pub enum TeleportMode {
     Reset,
 }
 
-/// A cloth was put elsewhere with its entity: because its [`ClothInertia`] says so of a motion like that, or by
-/// [`ClothFrame::teleport`].
+/// A cloth was put elsewhere, with its entity or what holds it: because its [`ClothInertia`] says so of a motion like that, by a hop
+/// ([`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed)), or by [`ClothFrame::teleport`].
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 pub struct ClothTeleported {
     /// The cloth.

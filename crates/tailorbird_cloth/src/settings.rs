@@ -23,7 +23,9 @@
 //! | --- | --- | --- |
 //! | [`gravity`](ClothSettings::gravity) | 9.81 m/s² down | nothing |
 //! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution, storms and blows, for each cloth its own | in proportion to their number |
-//! | [`substep_budget`](ClothSettings::substep_budget) | 500,000 | 3 ms (sheets) to 8 ms (meshes) in a storm, one core, AVX-512; nothing in calm air |
+//! | [`substep_budget`](ClothSettings::substep_budget) | 500,000 | 3 ms (sheets) to 8 ms (meshes) in a storm, or for meshes that are asked for more than they have, one core, AVX-512; else nothing |
+//! | [`most_substeps`](ClothSettings::most_substeps) | 64 | nothing until a load needs them |
+//! | [`overlap_speed`](ClothSettings::overlap_speed) | 1 m/s | nothing |
 //! | [`iterations`](ClothSettings::iterations) | 1 | nearly in proportion; substeps are the better use of it |
 //! | [`instruction_set`](ClothSettings::instruction_set) | the best of the machine | 128²: 1.5 ms with AVX-512, 2.6 AVX2, 5.0 SSE2, 5.5 scalar; the same bits |
 //! | [`time_scale`](ClothSettings::time_scale) | 1 | beyond 1 as many times as many substeps |
@@ -57,7 +59,7 @@ pub struct ClothSettings {
     /// Acceleration of every particle [m/s²].
     pub gravity: Vec3,
     /// Into how many substeps of equal length a step is divided, at least 1. More substeps make cloth stiffer and its
-    /// motion finer, at proportional cost. `None` is as many as the finest cloth needs: see
+    /// motion finer, at proportional cost. `None` is as many as each cloth needs: see
     /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
     pub substeps: Option<u32>,
     /// The most substeps that a cloth takes where their number is not set: it takes more than at rest in a hand, under bodies, where air,

@@ -125,8 +125,14 @@ impl ClothStagesItem<'_, '_> {
         let particles = &*self.particles;
         let strained = particles.effort.unmet();
         let entity = self.entity;
+        let stretched = particles.effort.stretched();
+        let known = [self.status.strained(), self.status.stretched()];
+        // It changes in each step, and counts as changed when it begins and ends.
+        if known.map(|part| part > 0.0) != [strained, stretched].map(|part| part > 0.0) {
+            self.status.set_changed();
+        }
         let status = self.status.bypass_change_detection();
-        status.note_stretched(particles.effort.stretched());
+        status.note_stretched(stretched);
         if strained != status.strained() && status.note_strained(strained) {
             let percent = strained * 100.0;
             warn!(

@@ -41,7 +41,8 @@ pub enum ErrorSource {
     State,
 }
 
-/// What is wrong with this cloth, collider or zone at present; empty when all is well.
+/// What is wrong with this cloth, collider or zone at present; empty when all is well. Beside it, and no error: which part of a cloth's edges
+/// is too long ([`strained`](Self::strained), [`stretched`](Self::stretched)), as of its last step awake; `Changed` sees each begin and end.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothStatus {
@@ -63,6 +64,12 @@ impl ClothStatus {
 
     /// Which part of a cloth's edges is longer than its fabric lets them be [-], while it is asked for more than the fabric has: posts that
     /// stand too far apart, a body within it. 0 where it is not, or is for a moment. It is logged when it begins.
+    ///
+    /// It begins where 5 % of the edges are longer by 3 %, or one is twice as long as at rest, for half a second where something touches the
+    /// cloth and for a second where nothing does; it ends where fewer than 1 % are (3 % of a sheet that is so in some place alone).
+    /// Air, forces and motion of more than 5 m/s count as loads, not as demands: see [`stretched`](Self::stretched). Where it lasts, look for what
+    /// holds or fills the cloth: [`AttachmentForce`](crate::attachment::AttachmentForce) and [`ClothPinForces`](crate::reaction::ClothPinForces) tell
+    /// who pulls.
     pub fn strained(&self) -> f32 {
         self.strained
     }

@@ -8,7 +8,7 @@
 //!     let cloth = Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48));
 //!     // Chains, with as many substeps as the cloth needs: nothing to do.
 //!     commands.spawn(cloth.clone());
-//!     // One that is to be pulled farther than it reaches.
+//!     // The classic one, to compare with.
 //!     commands.spawn((cloth, ClothSolver::GaussSeidel));
 //!     // All of them finer, at twice the cost of eight.
 //!     settings.substeps = Some(16);
@@ -34,7 +34,8 @@
 //! # More than the cloth has
 //!
 //! Clips farther apart than the way between them along the cloth, a tube that is too tight, a ball that is pushed through a net, a solid
-//! put into a curtain: no shape of a cloth that hardly stretches meets that. It stretches as evenly as it can, lies still, and is whole
+//! put into a curtain: no shape of a cloth that hardly stretches meets that. It stretches as evenly as it can (a few edges around a solid
+//! that stays inside by many times their length), lies still, and is whole
 //! again when the demand ends, without flying about. [`ClothStatus::strained`](crate::error::ClothStatus::strained) tells which part of
 //! its edges is longer than the fabric lets them be; one line is logged.
 //!

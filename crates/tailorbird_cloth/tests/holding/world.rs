@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy_app::{App, FixedUpdate, TaskPoolOptions, TaskPoolPlugin};
-use bevy_ecs::{component::Mutable, prelude::*};
+use bevy_ecs::{change_detection::Tick, component::Mutable, prelude::*};
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
@@ -101,6 +101,12 @@ impl World {
 
     pub fn get<C: Component>(&self, entity: Entity) -> &C {
         self.app.world().get(entity).unwrap()
+    }
+
+    /// When it changed last.
+    pub fn changed<C: Component>(&self, entity: Entity) -> Tick {
+        let component = self.app.world().entity(entity).get_ref::<C>().unwrap();
+        component.last_changed()
     }
 
     pub fn edit<C: Component<Mutability = Mutable>>(
