@@ -65,7 +65,7 @@ impl Pass<'_> {
         })
     }
 
-    /// How far lines give way, where the largest strain that is granted is this.
+    /// How far lines give way, where so much strain is granted to the cloth.
     pub(super) fn give(&self, effort: Effort, granted: f32, touches: bool) -> Give {
         if !effort.recovers {
             return Give::default();
