@@ -187,6 +187,9 @@ impl Effort {
         let still = STILL_STRAINED[usize::from(contacts.overlaps || granted || is_mesh)];
         let (most, long) = if self.recovers {
             (still, long[1])
+        } else if contacts.overlaps {
+            // Even if few edges touch it, they cannot push it out.
+            (0.005, long[0])
         } else {
             (STRAINED, long[0])
         };
@@ -203,8 +206,6 @@ impl Effort {
         self.recovers = self.steps >= moment || granted;
         self.settles = if self.recovers {
             SETTLES
-        } else if contacts.any {
-            0
         } else {
             self.settles.saturating_sub(1)
         };

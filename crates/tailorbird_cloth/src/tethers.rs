@@ -39,6 +39,9 @@ pub struct ClothTethers {
     revision: u64,
     #[reflect(ignore)]
     coming: Option<Coming>,
+    /// For how long what is beyond them comes back slowly, as some are new \[s\].
+    #[reflect(ignore)]
+    fresh: f32,
 }
 
 /// Ways that are measured while the cloth goes on.
@@ -54,6 +57,9 @@ struct Coming {
 const ROOM_BEYOND: f32 = 0.02;
 
 type Fields = [Option<Field>; ClothTethers::MOST];
+
+/// Ways from new pins are fresh for so long \[s\].
+const FRESH: f32 = 0.5;
 
 /// How many ways from pins to particles are measured within a step, at most.
 const WAYS_PER_STEP: usize = 4000;
@@ -109,6 +115,11 @@ impl ClothTethers {
             .iter()
             .flatten()
             .filter_map(move |field| field.ways.length(particle))
+    }
+
+    /// Whether some of the pins are new: particles may be farther from them than they get.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.fresh > 0.0
     }
 
     /// What the ways take on the heap \[byte\].
@@ -180,7 +191,8 @@ impl ClothTethers {
 ///
 /// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line. On other meshes it has to be
 /// found: that of a large one beside the steps, and used from a step on that depends on the size of the mesh alone. Until then its
-/// particles are tethered to those of the pins before that still hold.
+/// particles are tethered to those of the pins before that still hold. What is farther from a new pin than it gets comes back at a rate, not
+/// at once.
 pub fn build_tethers(
     step: Res<ClothStep>,
     mut cloths: Query<
@@ -197,6 +209,9 @@ pub fn build_tethers(
         let wanted = *solver == ClothSolver::Chains;
         let pins = || particles.anchors().filter(|_| wanted);
         let known = tethers.revision == topology.revision;
+        if tethers.is_fresh() {
+            tethers.fresh -= step.seconds();
+        }
         if known && pins().eq(tethers.pins.iter().copied()) {
             if tethers
                 .coming
@@ -206,6 +221,7 @@ pub fn build_tethers(
             {
                 let measured = coming.fields.get().cloned();
                 tethers.fields = measured.unwrap_or_else(|| fields(topology, &coming.anchors));
+                tethers.fresh = FRESH;
             }
             continue;
         }
@@ -225,6 +241,7 @@ pub fn build_tethers(
         // A cloth that is made or changed shape is not moving yet.
         if !known || ways < WAYS_PER_STEP {
             tethers.fields = fields(topology, &anchors);
+            tethers.fresh = if known { FRESH } else { 0.0 };
             continue;
         }
         for field in &mut tethers.fields {

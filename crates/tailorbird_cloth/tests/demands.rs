@@ -123,6 +123,20 @@ fn a_curtain_with_a_body_in_it_lies_still() {
     }
 }
 
+/// However few edges it meets.
+#[test]
+fn a_body_that_appears_throws_no_coarse_curtain() {
+    for scene in [
+        "--body ball --size 10",
+        "--body ball --size 12",
+        "--body ball --size 14 --mesh irregular",
+        "--body capsule --size 14 --hz 144 --material silk",
+        "--body capsule --size 24 --hz 144 --material silk",
+    ] {
+        holds(&format!("impaled {scene}"), &[("speed_peak", 6.0)]);
+    }
+}
+
 #[test]
 fn and_is_whole_when_the_body_has_gone() {
     for mesh in MESHES {
@@ -157,9 +171,14 @@ fn a_ball_that_is_pushed_into_a_net_leaves_it_whole() {
 /// Of a grid, whose threads are rings. It may slip off, and fall.
 #[test]
 fn a_tube_that_is_too_tight_stretches_evenly() {
-    for (tight, most) in [(0.01, 0.08), (0.03, 0.08), (0.1, 0.2)] {
+    // One that just does not fit creeps off: at any size single edges of it have up to 17 %.
+    for (tight, [p99, most]) in [(0.01, [0.08, 0.2]), (0.03, [0.08; 2]), (0.1, [0.2; 2])] {
         for size in SIZES {
-            let bounds = [("speed_peak", 3.0), ("stretch_max", most)];
+            let bounds = [
+                ("speed_peak", 3.0),
+                ("stretch_p99", p99),
+                ("stretch_max", most),
+            ];
             holds(&format!("tube --tight {tight} --size {size}"), &bounds);
         }
     }
@@ -168,10 +187,10 @@ fn a_tube_that_is_too_tight_stretches_evenly() {
 /// Of an irregular mesh, which has no rings.
 #[test]
 fn an_irregular_tube_that_is_too_tight_does_not_boil() {
-    for (tight, most) in [(0.01, 0.2), (0.03, 0.4), (0.1, 0.2)] {
+    for (tight, most) in [(0.01, 0.25), (0.03, 0.12), (0.1, 0.2)] {
         for size in SIZES {
             let scene = format!("tube --tight {tight} --mesh irregular --size {size}");
-            holds(&scene, &[("speed_peak", 40.0), ("stretch_max", most)]);
+            holds(&scene, &[("speed_peak", 3.0), ("stretch_max", most)]);
         }
     }
 }
@@ -262,4 +281,11 @@ fn a_sheet_that_is_dragged_to_and_fro_stays_in_one_piece() {
             holds(&format!("drag --mesh {mesh} --size {size}"), &bounds);
         }
     }
+}
+
+/// The ways to its pins are known after some steps; it is beyond them by then.
+#[test]
+fn a_large_mesh_that_is_dragged_at_once_is_not_snatched_back() {
+    let scene = "drag --mesh irregular --size 129 --substeps 16 --steps 20";
+    holds(scene, &[("speed_peak", 40.0), ("energy_gained", 60.0)]);
 }

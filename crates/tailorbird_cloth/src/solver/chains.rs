@@ -169,13 +169,14 @@ impl Pass<'_> {
             let place = particles.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
+        let fresh = tethers.is_fresh();
         match tethers.anchors(&particles.position, &particles.previous_position) {
             Anchors::Straight(tethers) => {
                 if let Some(lattice) = &topology.lattice {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
                     let effort = particles.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
-                    let how = (slack, self.recovery(effort, start));
+                    let how = (slack, self.recovery((effort, fresh), start));
                     crew.share(0..rows, |rows| {
                         tether::solve_straight(level, sheet, &tethers, how, rows);
                     });
@@ -184,7 +185,7 @@ impl Pass<'_> {
             Anchors::Lengths(tethers) => {
                 let effort = particles.effort;
                 let (sheet, start) = self.sheet(particles, [all, 1]);
-                let how = (slack, self.recovery(effort, start));
+                let how = (slack, self.recovery((effort, fresh), start));
                 crew.share(0..all, |range| {
                     tether::solve(level, sheet, &tethers, how, range);
                 });

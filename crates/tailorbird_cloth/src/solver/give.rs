@@ -9,6 +9,8 @@ use super::{
     },
 };
 use crate::effort::Effort;
+#[cfg(doc)]
+use crate::tethers::ClothTethers;
 
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;
@@ -50,15 +52,15 @@ const MESH: Softness = Softness {
 const PULL: f32 = 5.0;
 
 impl Pass<'_> {
-    /// How what is farther from a pin than it reaches comes back; none where it does so at once.
+    /// How what is farther from a pin than it reaches comes back; none where it does so at once. `fresh` is [`ClothTethers::is_fresh`].
     pub(super) fn recovery<'b>(
         &self,
-        effort: Effort,
+        (effort, fresh): (Effort, bool),
         start: SharedPoints<'b>,
     ) -> Option<Recovery<'b>> {
         let size = self.size().max(SMALLEST);
         let times = if effort.recovers { 1.0 } else { SETTLING };
-        effort.settles().then(|| Recovery {
+        (effort.settles() || fresh).then(|| Recovery {
             start,
             least: 2.0 * times * TETHER_SPEED * self.seconds / size,
             part: (times * TETHER_RATE * self.seconds).min(1.0),
