@@ -22,6 +22,7 @@ mod free_fall;
 mod friction;
 mod game;
 mod garment;
+mod golden;
 mod grab;
 mod half_space;
 mod lifecycle;

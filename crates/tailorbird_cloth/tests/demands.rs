@@ -13,7 +13,7 @@ mod example;
 /// The arguments for [`as_the_example`], one on each line.
 const ARGUMENTS: &str = "HEADLESS_ARGUMENTS";
 
-/// Not a test: in a process of its own this is the example, as in `tests/headless.rs`.
+/// Not a test: in a process of its own this is the example, as in `tests/headless/main.rs`.
 #[test]
 fn as_the_example() {
     if let Ok(arguments) = env::var(ARGUMENTS) {

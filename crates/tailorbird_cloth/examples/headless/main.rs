@@ -33,7 +33,7 @@ use scene::Sheet;
 
 #[cfg_attr(
     test,
-    expect(dead_code, reason = "tests/headless.rs calls what it calls")
+    expect(dead_code, reason = "tests/headless/main.rs calls what it calls")
 )]
 fn main() -> ExitCode {
     ExitCode::from(headless(std::env::args_os()))

@@ -11,8 +11,9 @@ use std::{
 
 use serde_json::Value;
 
-#[path = "../examples/headless/main.rs"]
+#[path = "../../examples/headless/main.rs"]
 mod example;
+mod golden;
 
 /// The arguments for [`as_the_example`], one on each line.
 const ARGUMENTS: &str = "HEADLESS_ARGUMENTS";
