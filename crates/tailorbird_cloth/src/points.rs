@@ -1,9 +1,6 @@
 //! Points as three parallel arrays.
 
 use bevy_math::Vec3;
-use fearless_simd::Level;
-
-use crate::solver::kernels::range::is_finite;
 
 use crate::numbers::Numbers;
 
@@ -116,14 +113,6 @@ impl Points {
         self.x.fill(value.x);
         self.y.fill(value.y);
         self.z.fill(value.z);
-    }
-
-    /// Whether no coordinate is infinite or NaN.
-    pub fn is_finite(&self) -> bool {
-        let level = Level::new();
-        [&self.x, &self.y, &self.z]
-            .into_iter()
-            .all(|values| is_finite(level, values))
     }
 }
 

@@ -3,11 +3,13 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
+use fearless_simd::Level;
 use tracing::warn;
 
 use crate::{
     cloth::{Cloth, ClothShape},
     error::{ClothErrorKind, ClothStatus, ErrorSource},
+    solver::kernels::range::are_finite,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };
@@ -139,7 +141,11 @@ impl ClothStagesItem<'_, '_> {
                 "{entity}: {percent:.0} % of the edges are longer than the fabric lets them be: holds or colliders ask for more"
             );
         }
-        if particles.position.is_finite() && particles.previous_position.is_finite() {
+        let all = [&particles.position, &particles.previous_position];
+        if all
+            .into_iter()
+            .all(|points| are_finite(Level::new(), points))
+        {
             return;
         }
         let particle = particles

@@ -10,31 +10,7 @@ use crate::{
     solver::kernels::interleave::{Between, Last, interleave, interleave_listed, interleave_sheet},
 };
 
-/// An attribute of three numbers in interleaved vertices.
-#[derive(Debug)]
-pub struct Interleaved<'a> {
-    /// All numbers of all vertices.
-    pub words: &'a mut [f32],
-    /// Numbers of a vertex.
-    pub stride: usize,
-    /// Where the attribute starts in a vertex; there are three numbers from there on.
-    pub offset: usize,
-}
-
-/// Rows of a sheet as interleaved vertices.
-#[derive(Debug)]
-pub struct SheetVertices<'a> {
-    /// All numbers of all vertices.
-    pub words: &'a mut [f32],
-    /// Numbers of a vertex.
-    pub stride: usize,
-    /// Vertices of a row.
-    pub columns: usize,
-    /// Where the position, the normal and the tangent start in a vertex. The tangent has four numbers.
-    pub places: [usize; 3],
-    /// The last number of the tangents.
-    pub handedness: f32,
-}
+pub use crate::solver::kernels::interleave::{Interleaved, SheetVertices};
 
 /// Which particle, or normal, each vertex follows; in storage order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

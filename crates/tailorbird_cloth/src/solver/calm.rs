@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use super::kernels::{
     lanes::{Shared, SharedPoints},
     lattice::Sheet,
-    line::Give,
+    lines::Give,
     rigid_motion::RigidMotion,
     squeeze,
 };

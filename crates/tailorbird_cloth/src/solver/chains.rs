@@ -3,9 +3,10 @@
 use fearless_simd::Level;
 
 use super::kernels::{
+    edges::LineStiffness,
     lanes::{Shared, SharedPoints},
     lattice::{self, Sheet},
-    line::{Give, LineStiffness},
+    lines::Give,
     mesh,
     rigid_motion::RigidMotion,
     shear::{self, Shear},

@@ -4,7 +4,7 @@ use super::{
     chains::Pass,
     kernels::{
         lanes::SharedPoints,
-        line::{Give, LARGEST_KAPPA},
+        lines::{Give, LARGEST_KAPPA},
         recovery::Recovery,
     },
 };

@@ -4,10 +4,33 @@ use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, f32x4, prelude::*};
 
 use super::lanes::{Factor, Reading, V3, Window, each_window, with_scratch};
-use crate::{
-    points::Points,
-    vertices::{Interleaved, SheetVertices},
-};
+use crate::points::Points;
+
+/// An attribute of three numbers in interleaved vertices.
+#[derive(Debug)]
+pub struct Interleaved<'a> {
+    /// All numbers of all vertices.
+    pub words: &'a mut [f32],
+    /// Numbers of a vertex.
+    pub stride: usize,
+    /// Where the attribute starts in a vertex; there are three numbers from there on.
+    pub offset: usize,
+}
+
+/// Rows of a sheet as interleaved vertices.
+#[derive(Debug)]
+pub struct SheetVertices<'a> {
+    /// All numbers of all vertices.
+    pub words: &'a mut [f32],
+    /// Numbers of a vertex.
+    pub stride: usize,
+    /// Vertices of a row.
+    pub columns: usize,
+    /// Where the position, the normal and the tangent start in a vertex. The tangent has four numbers.
+    pub places: [usize; 3],
+    /// The last number of the tangents.
+    pub handedness: f32,
+}
 
 /// The vectors of the last two steps.
 #[derive(Clone, Copy)]

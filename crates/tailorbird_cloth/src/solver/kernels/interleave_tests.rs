@@ -3,10 +3,7 @@
 use bevy_math::Vec3;
 
 use super::{interleave::*, lanes::levels};
-use crate::{
-    points::Points,
-    vertices::{Interleaved, SheetVertices},
-};
+use crate::points::Points;
 
 #[test]
 fn vectors_come_to_their_vertices_whatever_the_instructions() {

@@ -8,9 +8,11 @@ use std::ops::Range;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
+    edges::{Edge, LineStiffness, Whole},
     edges::{LineLengths, SheetLines},
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
-    line::{self, Edge, FREE, Give, LineStiffness, Lines, PRESSED, TOUCHING, Whole},
+    line,
+    lines::{FREE, Give, Lines, PRESSED, TOUCHING},
     tile::Tile,
 };
 

@@ -10,9 +10,11 @@ use bevy_math::Vec4;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
+    edges::{MeshLines, Whole},
     lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::{Block, for_few},
-    line::{self, FREE, Give, Lines, MeshLines, NO_MASS, PRESSED, TOUCHING, Whole},
+    line,
+    lines::{FREE, Give, Lines, NO_MASS, PRESSED, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
     rigid_motion::RigidMotion,
     ring,

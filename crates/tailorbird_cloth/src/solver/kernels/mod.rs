@@ -19,6 +19,7 @@ pub(crate) mod lanes;
 pub(crate) mod lattice;
 pub(crate) mod limit;
 pub(crate) mod line;
+pub(crate) mod lines;
 pub(crate) mod mesh;
 pub mod normals;
 pub mod packed;

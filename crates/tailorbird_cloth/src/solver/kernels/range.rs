@@ -78,8 +78,15 @@ fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
     (lowest.reduce_min(), highest.reduce_max())
 }
 
+/// Whether no coordinate of these points is infinite or NaN.
+pub fn are_finite(level: Level, points: &Points) -> bool {
+    [&points.x, &points.y, &points.z]
+        .into_iter()
+        .all(|values| is_finite(level, values))
+}
+
 /// Whether none of these numbers is infinite or NaN: 0 · v is 0 for finite ones alone.
-pub fn is_finite(level: Level, values: &[f32]) -> bool {
+fn is_finite(level: Level, values: &[f32]) -> bool {
     dispatch!(level, simd => is_finite_with(simd, values))
 }
 

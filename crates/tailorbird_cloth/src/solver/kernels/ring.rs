@@ -19,7 +19,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     edges::Edges,
     lanes::{Factor, Shared, SharedPoints, V3, WIDEST},
-    line::{FREE, Lines, NO_MASS, PRESSED, apply},
+    lines::{FREE, Lines, NO_MASS, PRESSED, apply},
     row::{beside, own},
     share::{Bounds, share},
 };

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::{
     lanes::{Shared, SharedPoints, levels},
-    line::{Give, LEAST_COMPLIANCE},
+    lines::{Give, LEAST_COMPLIANCE},
     mesh::{Mesh, solve_chains},
 };
 use crate::{

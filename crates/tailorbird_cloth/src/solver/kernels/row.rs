@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     edges::Edge,
     lanes::V3,
-    line::{FREE, Give, LEAST_PIVOT, NO_MASS},
+    lines::{FREE, Give, LEAST_PIVOT, NO_MASS},
 };
 
 /// The diagonal and the right side of an edge `d`, by the inverse masses and contact normals of its ends.

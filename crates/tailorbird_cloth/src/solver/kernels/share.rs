@@ -25,7 +25,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     edges::Edges,
     lanes::{Factor, Shared, V3},
-    line::{FREE, Give, LARGEST_KAPPA, Lines, NO_MASS, PRESSED},
+    lines::{FREE, Give, LARGEST_KAPPA, Lines, NO_MASS, PRESSED},
 };
 
 /// What multipliers are bounded by, |μ| \[kg\].

@@ -171,7 +171,7 @@ mod tests {
         points::Points,
         solver::kernels::{
             lanes::{Shared, levels},
-            line::Give,
+            lines::Give,
         },
     };
 

@@ -4,9 +4,9 @@ use bevy_math::{Vec2, Vec3};
 
 use super::{
     super::{
+        edges::LineStiffness,
         lanes::{Reading, Shared, SharedPoints},
         lattice,
-        line::LineStiffness,
         mesh::{self, Mesh},
         shear::{self, Shear},
         tether::{self, Straight, Tether},

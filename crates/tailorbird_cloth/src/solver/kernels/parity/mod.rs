@@ -9,7 +9,7 @@ use fearless_simd::Level;
 use super::{
     lanes::{Shared, SharedPoints, levels},
     lattice::{Lengths, Sheet},
-    line::Give,
+    lines::Give,
     recovery::Recovery,
 };
 use crate::{numbers::Numbers, points::Points, topology::test_meshes::random};

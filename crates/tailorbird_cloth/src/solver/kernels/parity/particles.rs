@@ -10,7 +10,7 @@ use super::{
         lanes::{Shared, SharedPoints, levels},
         lattice::Sheet,
         limit::{self, Backstop, Limits},
-        line::Give,
+        lines::Give,
         range,
         rigid_motion::RigidMotion,
         sphere::{self, MovingSphere},
