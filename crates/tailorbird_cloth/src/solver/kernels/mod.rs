@@ -22,6 +22,8 @@ pub(crate) mod line;
 pub(crate) mod lines;
 pub(crate) mod mesh;
 pub mod normals;
+#[cfg(test)]
+mod oracle;
 pub mod packed;
 #[cfg(test)]
 mod parity;
