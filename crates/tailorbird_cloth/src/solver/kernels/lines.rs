@@ -1,5 +1,7 @@
 //! Where the particles of chains lie, and how far chains give way: what `line` and `ring` solve.
 
+#![expect(clippy::doc_markdown, reason = "formulas")]
+
 use fearless_simd::Simd;
 
 use super::lanes::{Factor, Shared, SharedPoints, V3};

@@ -29,7 +29,7 @@ struct Cloth {
 
 impl Cloth {
     /// Solves it with a kernel, and returns where the particles are then.
-    fn solved(&self, give: Give, solve: impl FnOnce(Sheet)) -> Vec<DVec3> {
+    fn solved(&self, solve: impl FnOnce(Sheet)) -> Vec<DVec3> {
         let mut position: Points = self.position.iter().copied().collect();
         let mut normal: Points = self.normal.iter().copied().collect();
         let mut inv_mass = self.inv_mass.clone();
@@ -42,7 +42,7 @@ impl Cloth {
             inv_mass: Shared::new(&mut inv_mass),
             normal: (!self.normal.is_empty()).then(|| SharedPoints::new(&mut normal)),
             pressed: None,
-            give,
+            give: Give::default(),
             lengths: (!rows.is_empty()).then(|| Lengths {
                 rows: Shared::new(&mut rows),
                 columns: Shared::new(&mut columns),
