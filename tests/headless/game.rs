@@ -1,7 +1,7 @@
 //! An app as a game has it, without a window system and without a graphics driver, with manual time; and the hands of a
 //! player: pointer, buttons, wheel and keys, as the window system would report them.
 
-use std::time::Duration;
+use std::{thread, time::Duration};
 
 use bevy::{
     camera::Viewport,
@@ -81,6 +81,18 @@ pub fn with_textures(textures: ClothFabricPlugin) -> App {
     .insert_resource(Time::<Fixed>::from_hz(HERTZ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / HERTZ)));
     app
+}
+
+/// Lets frames pass until something is so; the files are read meanwhile.
+pub fn wait(app: &mut App, mut until: impl FnMut(&mut App) -> bool) {
+    for _ in 0..2000 {
+        app.update();
+        if until(app) {
+            return;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    panic!("nothing comes");
 }
 
 /// Lets frames pass.

@@ -1,6 +1,6 @@
 //! A glTF file with a garment of two primitives becomes one cloth: whole at its seams, held where it says, drawn as it was.
 
-use std::{collections::HashMap, thread, time::Duration};
+use std::collections::HashMap;
 
 use bevy::{
     asset::LoadState,
@@ -18,18 +18,6 @@ const SCENE: &str = "garments/skirt.gltf#Scene0";
 /// Rows of particles, and how many there are in each.
 const ROWS: usize = 38;
 const AROUND: usize = 112;
-
-/// Frames, until something is so; the files are read meanwhile.
-fn wait(app: &mut App, until: impl Fn(&App) -> bool) {
-    for _ in 0..2000 {
-        app.update();
-        if until(app) {
-            return;
-        }
-        thread::sleep(Duration::from_millis(5));
-    }
-    panic!("nothing comes");
-}
 
 fn wear(app: &mut App, scene: &'static str, from_mesh: ClothFromMesh) -> Entity {
     let scene = app.world().resource::<AssetServer>().load(scene);

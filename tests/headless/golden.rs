@@ -2,13 +2,7 @@
 //!
 //! `GOLDEN=write` writes them anew, for a change that means to.
 
-use std::{
-    env,
-    fmt::Write,
-    fs,
-    path::Path,
-    time::{Duration, Instant},
-};
+use std::{env, fmt::Write, fs, path::Path};
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;
@@ -24,9 +18,6 @@ const FILE: &str = "tests/headless/golden.txt";
 
 /// Frames of 1/60 s.
 const FRAMES: usize = 240;
-
-/// No scene takes longer to load.
-const LOADED: Duration = Duration::from_secs(60);
 
 /// FNV-1a, 64 bits, of all coordinates.
 fn hash(app: &mut App) -> u64 {
@@ -52,11 +43,9 @@ fn scenes_have_the_bits_that_are_written_down() {
     for scene in SceneKind::ALL {
         let mut app = demo(scene);
         // What is loaded comes when it does; from there on all begins anew.
-        let begun = Instant::now();
-        while all::<(With<SceneCloth>, With<ClothParticles>)>(&mut app).is_empty() {
-            assert!(begun.elapsed() < LOADED, "{scene} is not loaded");
-            app.update();
-        }
+        wait(&mut app, |app| {
+            !all::<(With<SceneCloth>, With<ClothParticles>)>(app).is_empty()
+        });
         tap(&mut app, KeyCode::KeyR);
         frames(&mut app, FRAMES);
         writeln!(now, "{:016x} {scene}", hash(&mut app)).expect("a line");
