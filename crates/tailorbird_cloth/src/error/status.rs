@@ -69,13 +69,13 @@ impl ClothStatus {
     /// cloth and for a second where nothing does; it ends where fewer than 1 % are (3 % of a sheet that is so in some place alone).
     /// Air, forces and motion of more than 5 m/s count as loads, not as demands: see [`stretched`](Self::stretched). Where it lasts, look for what
     /// holds or fills the cloth: [`AttachmentForce`](crate::attachment::AttachmentForce) and [`ClothPinForces`](crate::reaction::ClothPinForces) tell
-    /// who pulls.
+    /// who pulls. The cloth is whole again where [`stretched`](Self::stretched) is 0 as well.
     pub fn strained(&self) -> f32 {
         self.strained
     }
 
     /// Which part of a cloth's edges is longer by 3 % than its fabric lets them be [-], while it is asked for nothing that it has not: a storm, a
-    /// snatch, more weight than its substeps stand. 0 below 0.5 %. In a storm it takes more substeps then, within
+    /// snatch, more weight than its substeps stand, what is left of a demand. 0 below 0.5 %. In a storm it takes more substeps then, within
     /// [`most_substeps`](crate::settings::ClothSettings::most_substeps) and
     /// [`substep_budget`](crate::settings::ClothSettings::substep_budget): what stays above is for want of those.
     pub fn stretched(&self) -> f32 {
