@@ -50,6 +50,9 @@ pub(crate) const STRAIN: f32 = 0.03;
 /// A cloth of whose edges more than this part is strained is asked for more than the fabric has [-].
 const STRAINED: f32 = 0.05;
 
+/// And so is one that something is inside of, and of which more than this part is [-]: few edges touch it, however hard it draws them out.
+const STRAINED_INSIDE: f32 = 0.005;
+
 /// What is strained stays so until fewer of its edges are than this part [-], and where something is inside of it, it has been granted much, or is
 /// a mesh, until fewer are than that. What is too short for its pins in some place alone moves as it likes elsewhere.
 const STILL_STRAINED: [f32; 2] = [0.03, 0.01];
@@ -100,7 +103,7 @@ const RISE: f32 = 0.1;
 const STRUCK_RISE: f32 = 0.5;
 const FALL: f32 = 0.005;
 
-/// What has recovered and touches nothing settles for so many steps.
+/// What has recovered settles for so many steps.
 const SETTLES: u32 = 60;
 
 /// After so many steps of those it moves twice as fast.
@@ -159,7 +162,7 @@ impl Effort {
         self.steps >= LASTS
     }
 
-    /// Whether it recovers, or has just done so and touches nothing: what is farther from a pin than it reaches comes back slowly.
+    /// Whether it recovers, or has just done so: what is farther from a pin than it reaches comes back slowly.
     pub fn settles(self) -> bool {
         self.settles > 0
     }
@@ -188,8 +191,7 @@ impl Effort {
         let (most, long) = if self.recovers {
             (still, long[1])
         } else if contacts.overlaps {
-            // Even if few edges touch it, they cannot push it out.
-            (0.005, long[0])
+            (STRAINED_INSIDE, long[0])
         } else {
             (STRAINED, long[0])
         };

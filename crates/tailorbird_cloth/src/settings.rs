@@ -62,8 +62,9 @@ pub struct ClothSettings {
     /// motion finer, at proportional cost. `None` is as many as each cloth needs: see
     /// [`ClothSolver::substeps`](crate::solver::ClothSolver::substeps).
     pub substeps: Option<u32>,
-    /// The most substeps that a cloth takes where [`substeps`](Self::substeps) is `None`; less than it would take at rest is possible. It takes more than at rest in a hand, under bodies, where air,
-    /// forces or its entity's motion of more than 5 m/s stretch it, where it is struck, and as a mesh that is asked for more than it has.
+    /// The most substeps that a cloth takes where [`substeps`](Self::substeps) is `None`, at rest as well. It takes more than at rest in a
+    /// hand, under bodies, where air, forces or its entity's motion of more than 5 m/s stretch it, where it is struck, and as a mesh that is
+    /// asked for more than it has.
     pub most_substeps: u32,
     /// How many particles times substeps all cloths together take in a step at most, for storms, blows and meshes that are asked for more than they
     /// have, beyond what they take at rest; each its part of what it wants. A particle of a mesh that is no grid counts as eight. 0 is the same number always.

@@ -177,7 +177,7 @@ impl Pass<'_> {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
                     let effort = particles.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
-                    let how = (slack, self.recovery((effort, fresh), start));
+                    let how = (slack, self.recovery(effort, fresh, start));
                     crew.share(0..rows, |rows| {
                         tether::solve_straight(level, sheet, &tethers, how, rows);
                     });
@@ -186,7 +186,7 @@ impl Pass<'_> {
             Anchors::Lengths(tethers) => {
                 let effort = particles.effort;
                 let (sheet, start) = self.sheet(particles, [all, 1]);
-                let how = (slack, self.recovery((effort, fresh), start));
+                let how = (slack, self.recovery(effort, fresh, start));
                 crew.share(0..all, |range| {
                     tether::solve(level, sheet, &tethers, how, range);
                 });

@@ -9,8 +9,6 @@ use super::{
     },
 };
 use crate::effort::Effort;
-#[cfg(doc)]
-use crate::tethers::ClothTethers;
 
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;
@@ -52,10 +50,12 @@ const MESH: Softness = Softness {
 const PULL: f32 = 5.0;
 
 impl Pass<'_> {
-    /// How what is farther from a pin than it reaches comes back; none where it does so at once. `fresh` is [`ClothTethers::is_fresh`].
+    /// How what is farther from a pin than it reaches comes back; none where it does so at once. `fresh` is whether some
+    /// of the pins are new.
     pub(super) fn recovery<'b>(
         &self,
-        (effort, fresh): (Effort, bool),
+        effort: Effort,
+        fresh: bool,
         start: SharedPoints<'b>,
     ) -> Option<Recovery<'b>> {
         let size = self.size().max(SMALLEST);

@@ -8,6 +8,9 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use super::{Cloth, cloths, dense};
 use crate::solver::kernels::{edges::LineStiffness, lanes::levels, lattice};
 
+/// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
+const COMPLIANCE: f64 = 5e-4;
+
 /// One line of particles, and what it is solved with.
 struct Line {
     position: Vec<DVec3>,
@@ -19,8 +22,6 @@ struct Line {
     bend: f64,
     /// The part of |μ| that acts along edges as they lie, κ = 1.3 \[kg\].
     borne: f64,
-    /// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
-    compliance: f64,
 }
 
 impl Line {
@@ -60,7 +61,7 @@ impl Line {
         for k in 0..m {
             let [w_a, w_b] = [self.inv_mass[k], self.inv_mass[k + 1]];
             let (q, l2) = (d[k].length_squared(), self.length[k].powi(2));
-            let alpha = self.stretch.max((w_a + w_b) * l2 * self.compliance);
+            let alpha = self.stretch.max((w_a + w_b) * l2 * COMPLIANCE);
             let free = (w_a + w_b) * q.max(0.25 * l2) + alpha;
             let touching =
                 [(k, w_a), (k + 1, w_b)].map(|(i, w)| w * self.normal[i].dot(d[k]).powi(2));
@@ -181,7 +182,6 @@ impl Fabric {
             stretch: scale * f64::from(self.stretch),
             bend: scale * f64::from(self.bend),
             borne: 1.3 * kappa,
-            compliance: 5e-4,
         }
     }
 }
@@ -231,7 +231,7 @@ fn compare(cloth: &Cloth, fabric: Fabric, most: f64) -> Result<usize, TestCaseEr
     Ok(count)
 }
 
-/// Tried at most, always the same. Rounding is within a third of the bounds below in a hundred thousand lines.
+/// Always the same ones. In 350,000 lines of others rounding came to a third of the bounds below, and to half where lengths differ.
 fn cases() -> ProptestConfig {
     ProptestConfig {
         cases: 200,
