@@ -91,7 +91,7 @@ fn sizes() {
         assert!(Cloth::try_grid(size, UVec2::splat(5)).is_err());
         check(
             (cloth, far()),
-            |kind| matches!(kind, ClothErrorKind::Size { .. }),
+            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Size { .. })),
             &["Cloth grid size", &size.x.to_string(), "positive"],
             mend_cloth,
         );
@@ -110,7 +110,7 @@ fn resolutions() {
         assert!(Cloth::try_grid(Vec2::ONE, resolution).is_err());
         check(
             (Cloth::grid(Vec2::ONE, resolution), far()),
-            |kind| matches!(kind, ClothErrorKind::Resolution { value } if *value == resolution),
+            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Resolution { value }) if *value == resolution),
             &["resolution", &resolution.x.to_string(), "2 × 2"],
             mend_cloth,
         );
@@ -143,7 +143,12 @@ fn positions_of_a_mesh() {
         positions[2].y = value;
         check(
             (Cloth::mesh(positions, indices), far()),
-            |kind| matches!(kind, ClothErrorKind::NonFinitePosition { vertex: 2, .. }),
+            |kind| {
+                matches!(
+                    kind,
+                    ClothErrorKind::Shape(ShapeError::NonFinitePosition { vertex: 2, .. })
+                )
+            },
             &["positions[2]", &value.to_string(), "finite"],
             mend_cloth,
         );
@@ -159,11 +164,11 @@ fn indices_of_a_mesh() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::IndexOutOfRange {
+                ClothErrorKind::Shape(ShapeError::IndexOutOfRange {
                     at: 5,
                     value: 4,
                     vertices: 4
-                }
+                })
             )
         },
         &["indices[5]", "4", "below"],
@@ -171,19 +176,29 @@ fn indices_of_a_mesh() {
     );
     check(
         with(indices[..5].to_vec()),
-        |kind| matches!(kind, ClothErrorKind::IndexCount { value: 5 }),
+        |kind| {
+            matches!(
+                kind,
+                ClothErrorKind::Shape(ShapeError::IndexCount { value: 5 })
+            )
+        },
         &["5", "multiple of 3"],
         mend_cloth,
     );
     check(
         with(Vec::new()),
-        |kind| matches!(kind, ClothErrorKind::NoTriangles { vertices: 4, .. }),
+        |kind| {
+            matches!(
+                kind,
+                ClothErrorKind::Shape(ShapeError::NoTriangles { vertices: 4, .. })
+            )
+        },
         &["triangle", "4"],
         mend_cloth,
     );
     check(
         with(vec![0, 0, 1, 2, 2, 2]),
-        |kind| matches!(kind, ClothErrorKind::NoTriangles { .. }),
+        |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::NoTriangles { .. })),
         &["triangle"],
         mend_cloth,
     );
@@ -216,7 +231,7 @@ fn broken_triangles_are_dropped_and_the_rest_simulates() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::DegenerateTriangles { count: 1, first: 2 }
+                ClothErrorKind::Shape(ShapeError::DegenerateTriangles { count: 1, first: 2 })
             )
         },
         &["1", "2", "dropped"],
@@ -233,7 +248,7 @@ fn broken_triangles_are_dropped_and_the_rest_simulates() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::DuplicateTriangles { count: 1, first: 2 }
+                ClothErrorKind::Shape(ShapeError::DuplicateTriangles { count: 1, first: 2 })
             )
         },
         &["1", "2", "dropped"],
@@ -503,13 +518,13 @@ fn a_state_that_becomes_infinite_is_reset_and_says_so() {
 fn constructors_tell_at_once() {
     assert_eq!(
         Cloth::try_grid(Vec2::ONE, UVec2::ONE),
-        Err(ClothErrorKind::Resolution { value: UVec2::ONE })
+        Err(ShapeError::Resolution { value: UVec2::ONE })
     );
     let (positions, indices) = quad();
     assert!(Cloth::try_mesh(positions.clone(), indices).is_ok());
     assert_eq!(
         Cloth::try_mesh(positions, [0, 1, 9]),
-        Err(ClothErrorKind::IndexOutOfRange {
+        Err(ShapeError::IndexOutOfRange {
             at: 2,
             value: 9,
             vertices: 4

@@ -339,11 +339,11 @@ fn what_is_wrong_with_one_part_is_told_and_nothing_becomes_cloth() {
     let errors: Vec<_> = get::<ClothStatus>(&app, cloth).errors().cloned().collect();
     assert_eq!(
         errors,
-        [ClothErrorKind::IndexOutOfRange {
+        [ClothErrorKind::Shape(ShapeError::IndexOutOfRange {
             at: 2,
             value: 30,
             vertices: 25
-        }]
+        })]
     );
     assert!(app.world().get::<Cloth>(cloth).is_none());
     let good = add(&mut app, square());

@@ -4,11 +4,11 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
+use tailorbird_solver::kernels::range::range;
 
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
-    solver::kernels::range::range,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };

@@ -1,13 +1,13 @@
 //! Builds cloths, and rebuilds them when their shape changes.
 
 use std::{
-    collections::{HashMap, hash_map::DefaultHasher},
-    hash::Hasher,
+    collections::HashMap,
     sync::{Arc, Weak},
 };
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
+use tailorbird_solver::{points::Points, topology::Topology};
 use tracing::warn;
 
 use crate::{
@@ -16,8 +16,7 @@ use crate::{
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::ClothFrame,
     particles::ClothParticles,
-    points::Points,
-    topology::{ClothTopology, Topology},
+    topology::ClothTopology,
 };
 
 /// The topologies that are in use, so that cloths of equal shape and scale share one.
@@ -27,7 +26,7 @@ pub struct SharedTopologies(HashMap<u128, Weak<Topology>>);
 impl SharedTopologies {
     /// The topology of a shape that is scaled by `scale`, built where no cloth has it yet.
     fn get(&mut self, shape: &ClothShape, scale: Vec3) -> Result<Arc<Topology>, ClothErrorKind> {
-        let print = fingerprint(shape, scale);
+        let print = shape.fingerprint(scale);
         if let Some(topology) = self.0.get(&print).and_then(Weak::upgrade) {
             return Ok(topology);
         }
@@ -40,44 +39,6 @@ impl SharedTopologies {
     fn forget(&mut self) {
         self.0.retain(|_, topology| topology.strong_count() > 0);
     }
-}
-
-/// 128 bits that stand for all bits of a shape and its scale: two that differ do not meet in practice, so that none has to be
-/// kept to compare with.
-fn fingerprint(shape: &ClothShape, scale: Vec3) -> u128 {
-    let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
-    halves[1].write_u8(1);
-    let mut write = |number: u32| halves.iter_mut().for_each(|half| half.write_u32(number));
-    scale.to_array().iter().for_each(|v| write(v.to_bits()));
-    match shape {
-        ClothShape::Grid {
-            size,
-            resolution,
-            origin,
-        } => {
-            let numbers = [size.to_array(), origin.to_array()].map(|p| p.map(f32::to_bits));
-            let numbers = numbers.as_flattened().iter();
-            [0].iter()
-                .chain(&resolution.to_array())
-                .chain(numbers)
-                .copied()
-                .for_each(write);
-        }
-        ClothShape::Mesh {
-            positions,
-            indices,
-            weld_distance,
-        } => {
-            [1, weld_distance.to_bits(), positions.len() as u32]
-                .into_iter()
-                .for_each(&mut write);
-            let coordinates = positions.iter().flat_map(Vec3::to_array);
-            coordinates.map(f32::to_bits).for_each(&mut write);
-            indices.iter().copied().for_each(write);
-        }
-    }
-    let [low, high] = halves.map(|half| u128::from(half.finish()));
-    high << 64 | low
 }
 
 /// Builds the topology and particles of cloths that are new or whose shape or scale changed. Cloths of equal shape and scale
@@ -114,7 +75,8 @@ pub fn build_topology(
                 if !new.report.is_clean() {
                     warn!("{entity}: {}", new.report);
                 }
-                let dropped = new.dropped.clone();
+                let dropped = new.dropped.iter().cloned().map(ClothErrorKind::from);
+                let dropped: Vec<_> = dropped.collect();
                 topology.0 = new;
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, dropped);
                 ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, None);

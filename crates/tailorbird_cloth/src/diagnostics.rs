@@ -5,8 +5,9 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::{topology::Topology, wall_clock::WallClock};
 
-use crate::{particles::ClothParticles, topology::Topology, wall_clock::WallClock};
+use crate::particles::ClothParticles;
 
 /// How long the last step took. Written by the cloth systems alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]

@@ -36,11 +36,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
+use tailorbird_solver::{points::Points, topology::Topology};
 
-use crate::{
-    attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles,
-    points::Points, topology::Topology,
-};
+use crate::{attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles};
 
 /// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
 #[derive(Component, Clone, Debug, Default, Reflect)]

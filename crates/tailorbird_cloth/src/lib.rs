@@ -53,25 +53,19 @@ pub mod bounds;
 pub mod build;
 pub mod cloth;
 pub mod collider;
-mod crew;
 pub mod diagnostics;
 pub mod drawn;
-mod effort;
 pub mod error;
 pub mod forces;
 pub mod frame;
 pub mod grab;
-mod grant;
 pub mod inertia;
 pub mod material;
-mod memory;
 pub mod motion;
 pub mod normals;
-pub mod numbers;
 pub mod particles;
 pub mod pins;
 pub mod plugin;
-pub mod points;
 pub mod query;
 pub mod reaction;
 mod runner;
@@ -89,9 +83,10 @@ pub mod topology;
 mod unbounded;
 pub mod validate;
 pub mod vertices;
-pub mod wall_clock;
 pub mod weights;
 pub mod wind;
+
+pub use tailorbird_solver::{numbers, points, wall_clock};
 
 /// The types that most users of the crate name.
 pub mod prelude {
@@ -107,7 +102,7 @@ pub mod prelude {
             ExternalCollider, ExternalColliders,
         },
         diagnostics::{ClothStepTime, Stretch},
-        error::{ClothError, ClothErrorKind, ClothStatus},
+        error::{ClothError, ClothErrorKind, ClothStatus, ShapeError},
         forces::ClothForces,
         frame::ClothFrame,
         grab::ClothGrab,

@@ -4,15 +4,17 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
+use tailorbird_solver::{
+    crew::Crew,
+    kernels::{lanes::SharedPoints, normals, rigid},
+    points::Points,
+    topology::Topology,
+};
 
 use crate::{
     cloth::Cloth,
-    crew::Crew,
-    points::Points,
-    solver::kernels::{lanes::SharedPoints, normals, rigid},
     stages::{ClothStages, ClothStagesItem, for_each_cloth},
     step::ClothStep,
-    topology::Topology,
 };
 
 /// Which normals a cloth is shaded with.

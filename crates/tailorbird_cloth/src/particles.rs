@@ -3,17 +3,17 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-
-use crate::{
+use tailorbird_solver::{
     effort::Effort,
-    frame::ClothFrame,
     grant::Grant,
+    kernels::contact::Contacts,
     memory::heap,
     numbers::Numbers,
     points::Points,
-    solver::kernels::contact::Contacts,
     topology::{Topology, order::ParticleOrder},
 };
+
+use crate::{collider::near::Around, frame::ClothFrame};
 
 /// The state of all particles of one cloth, as parallel arrays, in the cloth's frame.
 ///
@@ -57,6 +57,9 @@ pub struct ClothParticles {
     /// Contacts in this substep, noted before the constraints are solved.
     #[reflect(ignore)]
     pub(crate) contacts: Contacts,
+    /// What is known of the colliders around.
+    #[reflect(ignore)]
+    pub(crate) around: Around,
     /// How it stands with what the cloth is asked for.
     pub(crate) effort: Effort,
     /// How much longer than at rest the threads of a strained mesh may be.
@@ -155,7 +158,7 @@ impl ClothParticles {
             + heap(&self.pins)
             + heap(&self.pulled)
             + heap(&self.calm)
-            + self.contacts.around.memory_bytes()
+            + self.around.memory_bytes()
             + self.grant.memory_bytes()
             + heap(&self.attached)
             + heap(&self.limited)
@@ -200,7 +203,7 @@ impl ClothParticles {
 
     /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
     /// frame \[m\]. `i` is in storage order, as in
-    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex()).
+    /// [`Topology::particle_of_vertex`](tailorbird_solver::topology::Topology::particle_of_vertex()).
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -350,7 +353,7 @@ impl ClothParticles {
     pub(crate) fn begin_step(&mut self) {
         self.step_position.copy_from(&self.position);
         self.contacts.overlaps = false;
-        self.contacts.around.begin_step();
+        self.around.begin_step();
     }
 
     /// Puts the particles back to where the step started, without velocity.

@@ -5,13 +5,14 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::topology::Topology;
 
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     material::ClothMaterial,
     particles::{ClothParticles, Held},
-    topology::{ClothTopology, Topology},
+    topology::ClothTopology,
     weights::ClothWeights,
 };
 

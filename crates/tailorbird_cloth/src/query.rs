@@ -2,8 +2,9 @@
 
 use bevy_math::Vec3;
 use bevy_shape::Ray3d;
+use tailorbird_solver::topology::Topology;
 
-use crate::{bounds::ClothBounds, particles::ClothParticles, topology::Topology};
+use crate::{bounds::ClothBounds, particles::ClothParticles};
 
 /// Where a ray meets a cloth, in the space of the ray that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,16 +8,18 @@ use bevy_ecs::{
     prelude::*,
     schedule::{NodeId, SystemKey},
 };
+use tailorbird_solver::{
+    crew::{Crew, Desk},
+    wall_clock::WallClock,
+};
 
 use crate::{
     cloth::Cloth,
     collider::ClothColliders,
-    crew::{Crew, Desk},
     diagnostics::ClothStepTime,
     schedule::ClothSubstep,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
-    wall_clock::WallClock,
     wind::BlowingWind,
 };
 

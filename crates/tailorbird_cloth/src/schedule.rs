@@ -1,8 +1,9 @@
 //! Sets, and the schedule that runs once per substep.
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use tailorbird_solver::wall_clock::WallClock;
 
-use crate::{diagnostics::ClothStepTime, step::ClothStep, wall_clock::WallClock};
+use crate::{diagnostics::ClothStepTime, step::ClothStep};
 
 /// The parts of a step, in order, in the schedule that was given to [`ClothPlugin::new`](crate::plugin::ClothPlugin::new).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -45,7 +45,8 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use fearless_simd::Level;
+
+pub use tailorbird_solver::instruction_set::InstructionSet;
 
 use crate::error::ClothErrorKind;
 
@@ -102,49 +103,6 @@ pub struct ClothSettings {
     pub paused: bool,
     /// While paused: how many steps to do all the same. Counts down.
     pub pending_steps: u32,
-}
-
-/// The instructions that the kernels use. What the machine does not have is replaced by the best that it has below.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Default)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum InstructionSet {
-    /// The best of this machine.
-    #[default]
-    Auto,
-    /// One number at a time.
-    Scalar,
-    /// 4 numbers at a time; every x86-64 processor.
-    Sse2,
-    /// 8 numbers at a time; x86-64-v3.
-    Avx2,
-    /// 16 numbers at a time; from Ice Lake and Zen 4 on.
-    Avx512,
-}
-
-impl InstructionSet {
-    /// The level of the vector library.
-    pub(crate) fn level(self) -> Level {
-        let best = Level::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            let sse2 = || best.as_sse2().map(Level::Sse2);
-            let avx2 = || best.as_avx2().map(Level::Avx2);
-            match self {
-                Self::Scalar => Some(Level::fallback()),
-                Self::Sse2 => sse2(),
-                Self::Avx2 => avx2().or_else(sse2),
-                Self::Auto | Self::Avx512 => None,
-            }
-            .unwrap_or(best)
-        }
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        match self {
-            Self::Scalar => Level::fallback(),
-            _ => best,
-        }
-    }
 }
 
 impl Default for ClothSettings {

@@ -3,13 +3,13 @@
 use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_math::Vec3;
 use fearless_simd::Level;
+use tailorbird_solver::crew::Crew;
 
 use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
     collider::{ClothColliders, ClothLayers},
-    crew::Crew,
     error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,

@@ -5,18 +5,12 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_time::Time;
 use fearless_simd::Level;
+use tailorbird_solver::{crew::Crew, topology::Topology};
 use tracing::error;
 
 use crate::{
-    cloth::Cloth,
-    crew::Crew,
-    particles::ClothParticles,
-    runner::OwnStages,
-    settings::ClothSettings,
-    sleep::ClothRest,
-    solver::ClothSolver,
-    stages::Substep,
-    topology::{ClothTopology, Topology},
+    cloth::Cloth, particles::ClothParticles, runner::OwnStages, settings::ClothSettings,
+    sleep::ClothRest, solver::ClothSolver, stages::Substep, topology::ClothTopology,
 };
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
@@ -169,7 +163,7 @@ impl ClothStep {
     /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
     /// on it, and the waves of short length that tension drives become too fast for a substep.
     fn loaded(&self, particles: &ClothParticles) -> f32 {
-        let load = particles.contacts.around.bodies.load;
+        let load = particles.around.bodies.load;
         if load == 0.0 || !particles.inv_mass.contains(&0.0) {
             return 1.0;
         }

@@ -6,25 +6,23 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_tasks::AsyncComputeTaskPool;
-
-use crate::{
-    cloth::Cloth,
-    memory::heap,
-    particles::ClothParticles,
-    points::Points,
-    solver::{
-        ClothSolver,
-        kernels::{
-            lanes::Reading,
-            tether::{Straight, Tether},
-        },
+use tailorbird_solver::{
+    kernels::{
+        lanes::Reading,
+        tether::{Straight, Tether},
     },
-    step::ClothStep,
+    memory::heap,
+    points::Points,
     topology::{
-        ClothTopology, Topology,
+        Topology,
         geodesic::{Geodesics, tether_anchors},
         lattice::Lattice,
     },
+};
+
+use crate::{
+    cloth::Cloth, particles::ClothParticles, solver::ClothSolver, step::ClothStep,
+    topology::ClothTopology,
 };
 
 /// How far each particle gets from up to four of the pins: the way along the sheet at rest. In storage order. Written by

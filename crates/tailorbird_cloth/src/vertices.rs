@@ -2,15 +2,13 @@
 
 use bevy_math::Vec3;
 use fearless_simd::Level;
-
-use crate::{
-    drawn::ClothDrawnHolds,
-    normals::ClothNormals,
-    particles::ClothParticles,
-    solver::kernels::interleave::{Between, Last, interleave, interleave_listed, interleave_sheet},
+use tailorbird_solver::kernels::interleave::{
+    Between, Last, interleave, interleave_listed, interleave_sheet,
 };
 
-pub use crate::solver::kernels::interleave::{Interleaved, SheetVertices};
+use crate::{drawn::ClothDrawnHolds, normals::ClothNormals, particles::ClothParticles};
+
+pub use tailorbird_solver::kernels::interleave::{Interleaved, SheetVertices};
 
 /// Which particle, or normal, each vertex follows; in storage order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

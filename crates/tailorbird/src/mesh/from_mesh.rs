@@ -325,7 +325,9 @@ fn held(
     let threshold = from_mesh.pins.threshold()?;
     let weights = from_mesh.pins.weights(meshes, positions)?;
     let repaired = Repaired::new(positions, indices, from_mesh.weld_distance, Vec3::ONE);
-    let weights = repaired.weights(&weights);
+    let weights = ClothWeights {
+        weights: repaired.weights(&weights),
+    };
     let particles = weights.above(threshold).collect();
     let pin = ClothPin::new(PinSelection::Particles(particles));
     Ok(Some((weights, pin)))

@@ -8,7 +8,10 @@ use bevy_reflect::prelude::*;
 use bevy_scene::ScenePatchInstance;
 use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
-use tailorbird_cloth::{cloth::Cloth, error::ClothErrorKind};
+use tailorbird_cloth::{
+    cloth::Cloth,
+    error::{ClothErrorKind, ShapeError},
+};
 
 use super::{
     ClothFromMesh, ClothMeshOf,
@@ -207,16 +210,17 @@ pub(super) fn append(
     }
     let own = &mut indices[start..];
     if !own.len().is_multiple_of(3) {
-        return Err(ClothErrorKind::IndexCount { value: own.len() });
+        return Err(ShapeError::IndexCount { value: own.len() }.into());
     }
     let vertices = places.len();
     for (at, index) in own.iter_mut().enumerate() {
         if *index as usize >= vertices {
-            return Err(ClothErrorKind::IndexOutOfRange {
+            return Err(ShapeError::IndexOutOfRange {
                 at,
                 value: *index,
                 vertices,
-            });
+            }
+            .into());
         }
         *index += first;
     }

@@ -1,12 +1,12 @@
 //! Times of the kernels, one table for each size.
 
 use serde::Serialize;
-use tailorbird_cloth::{
-    prelude::*,
-    solver::kernels::times::{KernelTime, measure},
-};
+use tailorbird_cloth::prelude::*;
 
-use super::cli::{Args, Isa};
+use super::{
+    cli::{Args, Isa},
+    times::{KernelTime, measure},
+};
 
 /// One measurement, as it is written.
 #[derive(Serialize, Clone, Debug)]

@@ -14,6 +14,7 @@ mod machine;
 mod measure;
 mod record;
 mod scene;
+mod times;
 
 use std::{fs::File, io, process::ExitCode};
 

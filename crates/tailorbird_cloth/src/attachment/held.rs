@@ -4,16 +4,10 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
+use tailorbird_solver::{kernels::spring, memory::heap, topology::order::ParticleOrder};
 
 use super::pose::{Map, Pose, motion};
-use crate::{
-    frame::ClothFrame,
-    memory::heap,
-    particles::ClothParticles,
-    solver::{alpha_tilde, kernels::spring},
-    stages::Substep,
-    topology::order::ParticleOrder,
-};
+use crate::{frame::ClothFrame, particles::ClothParticles, solver::alpha_tilde, stages::Substep};
 
 /// The particles of a cloth that attachments hold, and where. Written by
 /// [`prepare_attachments`](super::prepare_attachments) alone.

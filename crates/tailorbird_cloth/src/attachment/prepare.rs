@@ -4,6 +4,7 @@ use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
+use tailorbird_solver::topology::Topology;
 
 use super::{
     AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
@@ -18,7 +19,7 @@ use crate::{
     sampling::{SampledPose, SampledPoses, excess},
     sleep::ClothRest,
     step::ClothStep,
-    topology::{ClothTopology, Topology},
+    topology::ClothTopology,
 };
 
 /// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.

@@ -22,14 +22,13 @@
 
 use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Quat, Vec3};
+use tailorbird_solver::{
+    kernels::solid::{Contact, Motion},
+    points::Points,
+};
 
 use super::{ClothColliders, ClothReaction, ColliderBody};
-use crate::{
-    frame::ClothFrame,
-    points::Points,
-    solver::kernels::solid::{Contact, Motion},
-    stages::Substep,
-};
+use crate::{frame::ClothFrame, stages::Substep};
 
 /// Time in which a cloth forgets a load \[s\].
 const LOADED: f32 = 0.25;

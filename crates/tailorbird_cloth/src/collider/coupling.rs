@@ -3,6 +3,7 @@
 use std::{mem, ops::Range};
 
 use bevy_math::Vec3;
+use tailorbird_solver::{kernels::contact::Phase, points::Points};
 
 use super::{
     ClothColliders,
@@ -13,8 +14,6 @@ use super::{
 };
 use crate::{
     particles::ClothParticles,
-    points::Points,
-    solver::kernels::contact::Phase,
     stages::{ClothStagesItem, Substep},
 };
 

@@ -5,6 +5,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Mat3, Vec3};
 use fearless_simd::Level;
+use tailorbird_solver::kernels::{
+    ball::{Ball, Ground},
+    capsule::Capsule,
+    contact::{Out, Phase, Touching},
+    cuboid::Cuboid,
+    cylinder::Cylinder,
+    half_space::{self, MovingHalfSpace},
+    lanes::{Shared, SharedPoints},
+    patches::{Patches, Seen},
+    planes::Planes,
+    solid::{self, Contact, Motion},
+    sphere::{self, MovingSphere},
+    terrain::Terrain,
+};
 
 use super::{
     near::Around,
@@ -16,20 +30,6 @@ use super::{
 use crate::{
     frame::shortest,
     particles::ClothParticles,
-    solver::kernels::{
-        ball::{Ball, Ground},
-        capsule::Capsule,
-        contact::{Out, Phase, Touching},
-        cuboid::Cuboid,
-        cylinder::Cylinder,
-        half_space::{self, MovingHalfSpace},
-        lanes::{Shared, SharedPoints},
-        patches::{Patches, Seen},
-        planes::Planes,
-        solid::{self, Contact, Motion},
-        sphere::{self, MovingSphere},
-        terrain::Terrain,
-    },
     stages::{ClothStagesItem, Substep},
 };
 

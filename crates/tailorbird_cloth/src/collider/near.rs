@@ -5,6 +5,7 @@ use std::{hash::Hash, ops::Range};
 use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
+use tailorbird_solver::{kernels::range::bounds, points::Points};
 
 use super::{
     ClothColliders, ClothLayers,
@@ -13,9 +14,7 @@ use super::{
     snapshot::MovingCollider,
     solid::{Solid, swept},
 };
-use crate::{
-    bounds::ClothBounds, frame::ClothFrame, points::Points, solver::kernels::range::bounds,
-};
+use crate::{bounds::ClothBounds, frame::ClothFrame};
 
 /// Particles of a block.
 const BLOCK: usize = 128;
@@ -67,11 +66,11 @@ impl Around {
 
     /// What it takes on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        crate::memory::heap(&self.near)
-            + crate::memory::heap(&self.blocks)
-            + crate::memory::heap(&self.found)
-            + crate::memory::heap(&self.passing)
-            + crate::memory::heap(&self.couplings)
+        tailorbird_solver::memory::heap(&self.near)
+            + tailorbird_solver::memory::heap(&self.blocks)
+            + tailorbird_solver::memory::heap(&self.found)
+            + tailorbird_solver::memory::heap(&self.passing)
+            + tailorbird_solver::memory::heap(&self.couplings)
             + self.sights.iter().map(Sight::memory_bytes).sum::<usize>()
     }
 

@@ -1,17 +1,16 @@
 //! What the particles of a cloth see of triangle meshes.
 
 use bevy_ecs::prelude::*;
-
-use super::{near::Around, snapshot::MovingCollider, solid::Solid, surface::Surface};
-use crate::{
-    particles::ClothParticles,
-    points::Points,
-    solver::kernels::{
+use tailorbird_solver::{
+    kernels::{
         patches::{Patches, outdated},
         solid::Motion,
     },
-    stages::Substep,
+    points::Points,
 };
+
+use super::{near::Around, snapshot::MovingCollider, solid::Solid, surface::Surface};
+use crate::{particles::ClothParticles, stages::Substep};
 
 /// What the particles of a cloth see of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +39,7 @@ impl Sight {
         points.iter().sum::<usize>()
             + offset.memory_bytes()
             + holds.memory_bytes()
-            + crate::memory::heap(&self.outdated)
+            + tailorbird_solver::memory::heap(&self.outdated)
     }
 }
 

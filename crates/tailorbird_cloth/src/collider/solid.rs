@@ -3,9 +3,9 @@
 use std::{collections::BTreeMap, fmt, sync::Arc};
 
 use bevy_math::{Isometry3d, Mat3, Vec2, Vec3, Vec4};
+use tailorbird_solver::kernels::planes::PlaneList;
 
 use super::{ColliderShape, ConvexHull, HeightField, TriMesh, surface::Surface};
-use crate::solver::kernels::planes::PlaneList;
 
 /// A shape at the scale of its entity.
 #[derive(Clone)]

@@ -3,12 +3,13 @@
 use std::mem;
 
 use bevy_ecs::prelude::*;
+use tailorbird_solver::kernels::contact::Phase;
 
 use super::{ClothColliders, snapshot::MovingCollider, solid::Kind};
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
-    solver::{ClothSolver, kernels::contact::Phase},
+    solver::ClothSolver,
     stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
     step::ClothStep,
 };
@@ -63,18 +64,19 @@ impl ClothColliders {
     /// What [`find_contacts`] does for one cloth.
     pub(crate) fn approach(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
         let particles = &mut *cloth.particles;
-        let bodies = &mut particles.contacts.around.bodies;
+        let bodies = &mut particles.around.bodies;
         bodies.advance(&self.bodies, substep);
         if *cloth.solver != ClothSolver::Chains || self.is_empty() {
             particles.contacts.clear();
+            particles.around.couplings.clear();
             return;
         }
         let len = particles.len();
         particles.contacts.reset(len);
         self.collide(Phase::Approach, None, substep, cloth);
-        let mut around = mem::take(&mut cloth.particles.contacts.around);
+        let mut around = mem::take(&mut cloth.particles.around);
         self.share_out(substep, cloth, &mut around);
-        cloth.particles.contacts.around = around;
+        cloth.particles.around = around;
     }
 
     /// What the systems after the constraints do for one cloth, one after the other.
@@ -105,7 +107,7 @@ impl ClothColliders {
         if !loaded && !self.colliders.iter().any(meant) {
             return;
         }
-        let mut around = mem::take(&mut contacts.around);
+        let mut around = mem::take(&mut cloth.particles.around);
         if loaded {
             self.hand_over(substep, cloth, &mut around);
         }
@@ -133,7 +135,7 @@ impl ClothColliders {
                 collider.collide(phase, substep, cloth, &mut around);
             }
         }
-        cloth.particles.contacts.around = around;
+        cloth.particles.around = around;
     }
 }
 

@@ -8,9 +8,9 @@ use parry3d::{
     query::{PointQueryWithLocation, Ray, RayCast},
     shape::{TriMesh as SearchMesh, TriMeshFlags},
 };
+use tailorbird_solver::kernels::patches::Patches;
 
 use super::TriMesh;
-use crate::solver::kernels::patches::Patches;
 
 /// A triangle mesh at the scale of its entity.
 pub(crate) struct Surface {

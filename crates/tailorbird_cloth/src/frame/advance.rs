@@ -2,12 +2,12 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use tailorbird_solver::kernels::rigid;
 
 use super::{ClothFrame, Taken};
 use crate::{
     cloth::Cloth,
     particles::ClothParticles,
-    solver::kernels::rigid,
     stages::{ClothStages, Substep, for_each_awake},
     step::ClothStep,
 };

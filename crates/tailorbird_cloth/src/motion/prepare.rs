@@ -4,6 +4,17 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
+use tailorbird_solver::{
+    kernels::{
+        lanes::{Shared, SharedPoints},
+        limit::{self, Backstop, Limits},
+        normals,
+    },
+    memory::heap,
+    numbers::Numbers,
+    points::Points,
+    topology::Topology,
+};
 
 use super::{
     ClothMotionConstraints, ClothMotionTargets, TargetSamples, TargetSpace, samples::TargetsAt,
@@ -12,21 +23,13 @@ use crate::{
     cloth::Cloth,
     error::{ClothStatus, ErrorSource},
     frame::ClothFrame,
-    memory::heap,
-    numbers::Numbers,
     particles::ClothParticles,
-    points::Points,
     sampling::{FrameClock, HopDetector},
     settings::ClothSettings,
     sleep::ClothRest,
-    solver::kernels::{
-        lanes::{Shared, SharedPoints},
-        limit::{self, Backstop, Limits},
-        normals,
-    },
     stages::Substep,
     step::ClothStep,
-    topology::{ClothTopology, Topology},
+    topology::ClothTopology,
 };
 
 /// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.

@@ -3,10 +3,10 @@
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::memory::heap;
 
 use super::{ClothMotionTargets, MotionState};
 use crate::{
-    memory::heap,
     particles::ClothParticles,
     sampling::{FrameClock, FrameKind, HopDetector, LAPSE},
     settings::ClothSettings,

@@ -306,7 +306,7 @@ impl ClothStagesItem<'_, '_> {
             return;
         }
         let seconds = step.seconds();
-        let carries = self.particles.contacts.around.bodies.pushed(colliders);
+        let carries = self.particles.around.bodies.pushed(colliders);
         let still = self.particles.is_at_rest(self.sleep.speed, seconds);
         let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
         // What has begun to settle is left to it until something happens: knots tug at themselves all the time.

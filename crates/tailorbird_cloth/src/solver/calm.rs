@@ -1,21 +1,21 @@
 //! What is looked at after the last substep of a step, and calmed.
 
 use fearless_simd::Level;
-
-use super::kernels::{
-    lanes::{Shared, SharedPoints},
-    lattice::Sheet,
-    lines::Give,
-    rigid_motion::RigidMotion,
-    squeeze,
-};
-use crate::{
+use tailorbird_solver::{
     effort::{Effort, Longest, Seen},
     grant::Threads,
-    particles::ClothParticles,
+    kernels::{
+        lanes::{Shared, SharedPoints},
+        lattice::Sheet,
+        lines::Give,
+        rigid_motion::RigidMotion,
+        squeeze,
+    },
     points::Points,
     topology::{Topology, lattice::Lattice},
 };
+
+use crate::particles::ClothParticles;
 
 /// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
 /// its momentum.
@@ -38,13 +38,14 @@ pub(crate) fn calm(
         effort,
         grant,
         contacts,
+        around,
         ..
     } = particles;
     if let Some(lattice) = &topology.lattice {
         let sheet = bare(lattice, position, inv_mass);
         let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
         // What carries bodies takes more substeps for them already, and would throw them.
-        if contacts.around.couplings.is_empty() {
+        if around.couplings.is_empty() {
             let side = lattice.columns.max(lattice.rows) as f32;
             let longest = Longest {
                 times: survey.longest,
@@ -89,7 +90,7 @@ pub(crate) fn calm(
                 strained += 1;
             }
         }
-        if contacts.around.couplings.is_empty() {
+        if around.couplings.is_empty() {
             let part = strained as f32 / count.max(1) as f32;
             let longest = Longest {
                 times: far.sqrt(),

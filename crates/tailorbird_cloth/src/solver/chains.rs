@@ -1,26 +1,28 @@
 //! The chain solver: what it does to a cloth in a substep. The page beside the kernels, `kernels/README.md`, explains it.
 
 use fearless_simd::Level;
-
-use super::kernels::{
-    edges::LineStiffness,
-    lanes::{Shared, SharedPoints},
-    lattice::{self, Sheet},
-    lines::Give,
-    mesh,
-    rigid_motion::RigidMotion,
-    shear::{self, Shear},
-    tether,
-    verlet::Verlet,
-    viscosity::{self, Beside, Motion},
-};
-use crate::{
+use tailorbird_solver::{
     crew::Crew,
+    kernels::{
+        edges::LineStiffness,
+        lanes::{Shared, SharedPoints},
+        lattice::{self, Sheet},
+        lines::Give,
+        mesh,
+        rigid_motion::RigidMotion,
+        shear::{self, Shear},
+        tether,
+        verlet::Verlet,
+        viscosity::{self, Beside, Motion},
+    },
+    topology::{Topology, lattice::Lattice},
+};
+
+use crate::{
     material::ClothMaterial,
     particles::ClothParticles,
     stages::Substep,
     tethers::{Anchors, ClothTethers},
-    topology::{Topology, lattice::Lattice},
 };
 
 /// How much longer than at rest a tether is [-]: what is left to the chains.
@@ -166,7 +168,7 @@ impl Pass<'_> {
         }
         let all = particles.len();
         let (level, crew) = (self.level, self.crew);
-        for coupling in &mut particles.contacts.around.couplings {
+        for coupling in &mut particles.around.couplings {
             let place = particles.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
@@ -192,7 +194,7 @@ impl Pass<'_> {
                 });
             }
         }
-        for coupling in &mut particles.contacts.around.couplings {
+        for coupling in &mut particles.around.couplings {
             let place = particles.position.get(coupling.particle);
             coupling.held -= coupling.normal.dot(place);
         }

@@ -1,12 +1,12 @@
 //! The classic solver: springs one by one.
 
-use super::{alpha_tilde, kernels::distance};
-use crate::{
-    material::ClothMaterial,
-    particles::ClothParticles,
-    stages::Substep,
+use tailorbird_solver::{
+    kernels::distance,
     topology::{Topology, constraints::ConstraintFamily},
 };
+
+use super::alpha_tilde;
+use crate::{material::ClothMaterial, particles::ClothParticles, stages::Substep};
 
 /// Passes over all springs, batch by batch.
 pub(super) fn solve(

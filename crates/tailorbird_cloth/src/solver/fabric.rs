@@ -1,18 +1,17 @@
 //! What the chain solver does to a triangle mesh that is no grid.
 
-use super::{
-    chains::Pass,
+use tailorbird_solver::{
     kernels::{
         hinge::{HingePass, Hinges},
         lanes::{Shared, SharedPoints},
         mesh::{self, Mesh},
         packed::{Packed, with_packed},
     },
-};
-use crate::{
-    particles::ClothParticles,
     topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
+
+use super::chains::Pass;
+use crate::particles::ClothParticles;
 
 /// How many times a substep solves each constraint of a mesh; so much softer each has to be.
 const TIMES: f32 = 2.0;

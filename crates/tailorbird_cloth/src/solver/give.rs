@@ -1,14 +1,15 @@
 //! What a cloth gives way to that is asked for more than its fabric has; [`effort`] tells when.
 
-use super::{
-    chains::Pass,
+use tailorbird_solver::{
+    effort::Effort,
     kernels::{
         lanes::SharedPoints,
         lines::{Give, LARGEST_KAPPA},
         recovery::Recovery,
     },
 };
-use crate::effort::Effort;
+
+use super::chains::Pass;
 
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;

@@ -57,22 +57,18 @@ pub(crate) mod chains;
 mod classic;
 mod fabric;
 mod give;
-pub mod kernels;
-#[cfg(test)]
-mod mesh_tests;
+mod slowing;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::{effort, kernels::verlet::Verlet, topology::Topology};
 
 use crate::{
     cloth::Cloth,
-    effort,
     particles::ClothParticles,
     stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
     step::ClothStep,
-    topology::Topology,
 };
-use kernels::verlet::Verlet;
 
 /// How the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]

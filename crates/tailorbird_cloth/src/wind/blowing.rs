@@ -4,27 +4,26 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Isometry3d, Vec3};
-use tracing::error;
-
-use super::{
-    Turbulence, Wind, WindModel, WindShape, WindZone,
-    turbulence::{WAVES, Wave, sine},
-    zone::{is_whole_in, strength},
-};
-use crate::{
-    bounds::ClothBounds,
-    cloth::Cloth,
+use tailorbird_solver::{
     crew::Crew,
-    error::{ClothStatus, ErrorSource},
-    frame::{ClothFrame, split},
-    particles::ClothParticles,
-    points::Points,
-    sampling::SampledPoses,
-    solver::kernels::{
+    kernels::{
         aerodynamics::{self, Air, AirSheet},
         breeze::{self, Breeze},
         lanes::SharedPoints,
     },
+    points::Points,
+    wind::{WAVES, Wave, WindShape, sine, strength},
+};
+use tracing::error;
+
+use super::{Turbulence, Wind, WindModel, WindZone, zone::is_whole_in};
+use crate::{
+    bounds::ClothBounds,
+    cloth::Cloth,
+    error::{ClothStatus, ErrorSource},
+    frame::{ClothFrame, split},
+    particles::ClothParticles,
+    sampling::SampledPoses,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };

@@ -17,12 +17,11 @@ use bevy_reflect::prelude::*;
 use crate::error::ClothErrorKind;
 
 mod blowing;
-pub(crate) mod turbulence;
 mod zone;
 
 pub use blowing::{BlowingWind, apply_wind, prepare_wind};
-pub use turbulence::Turbulence;
-pub use zone::{WindShape, WindZone};
+pub use tailorbird_solver::wind::{Turbulence, WindShape};
+pub use zone::WindZone;
 
 /// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
@@ -131,10 +130,10 @@ impl Wind {
             self.gusts
                 .errors(["Wind.gusts.strength", "Wind.gusts.period"]),
         )
-        .chain(
-            self.turbulence
-                .errors(["Wind.turbulence.speed", "Wind.turbulence.scale"]),
-        )
+        .chain(turbulence_errors(
+            &self.turbulence,
+            ["Wind.turbulence.speed", "Wind.turbulence.scale"],
+        ))
         .collect()
     }
 }
@@ -183,4 +182,24 @@ impl Gusts {
         .into_iter()
         .flatten()
     }
+}
+
+/// What is wrong with turbulence; `fields` names its speed and its scale.
+fn turbulence_errors(
+    turbulence: &Turbulence,
+    fields: [&'static str; 2],
+) -> impl Iterator<Item = ClothErrorKind> {
+    let speed = |v: f32| v >= 0.0 && v.is_finite();
+    let scale = |v: f32| v > 0.0 && v.is_finite();
+    [
+        ClothErrorKind::number(
+            fields[0],
+            turbulence.speed,
+            speed,
+            "at least 0 and finite [m/s]",
+        ),
+        ClothErrorKind::number(fields[1], turbulence.scale, scale, "above 0 and finite [m]"),
+    ]
+    .into_iter()
+    .flatten()
 }

@@ -4,8 +4,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
+use tailorbird_solver::wind::WindShape;
 
-use super::{Gusts, Turbulence};
+use super::{Gusts, Turbulence, turbulence_errors};
 use crate::{
     error::{ClothErrorKind, ClothStatus},
     sampling::SampledMotion,
@@ -49,27 +50,6 @@ pub struct WindZone {
     pub gusts: Gusts,
     /// How it swirls.
     pub turbulence: Turbulence,
-}
-
-/// Where a [`WindZone`] blows, in the entity's axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
-pub enum WindShape {
-    /// In the whole world.
-    #[default]
-    Everywhere,
-    /// In a box around the entity.
-    Cuboid {
-        /// Half its sides \[m\].
-        half_size: Vec3,
-    },
-    /// In a sphere around the entity.
-    Sphere {
-        /// \[m\]
-        radius: f32,
-    },
 }
 
 impl Default for WindZone {
@@ -141,46 +121,11 @@ impl WindZone {
                 self.gusts
                     .errors(["WindZone.gusts.strength", "WindZone.gusts.period"]),
             )
-            .chain(
-                self.turbulence
-                    .errors(["WindZone.turbulence.speed", "WindZone.turbulence.scale"]),
-            )
+            .chain(turbulence_errors(
+                &self.turbulence,
+                ["WindZone.turbulence.speed", "WindZone.turbulence.scale"],
+            ))
             .collect()
-    }
-}
-
-impl WindShape {
-    /// As large as an entity of this scale makes it.
-    pub(super) fn scaled(self, scale: Vec3) -> Self {
-        let scale = scale.abs();
-        match self {
-            Self::Everywhere => self,
-            Self::Cuboid { half_size } => Self::Cuboid {
-                half_size: half_size * scale,
-            },
-            Self::Sphere { radius } => Self::Sphere {
-                radius: radius * scale.max_element(),
-            },
-        }
-    }
-
-    /// How far a point in the shape's axes is inside its border \[m\]; negative outside.
-    pub(super) fn depth(self, point: Vec3) -> f32 {
-        match self {
-            Self::Everywhere => f32::INFINITY,
-            Self::Cuboid { half_size } => (half_size - point.abs()).min_element(),
-            Self::Sphere { radius } => radius - point.length(),
-        }
-    }
-}
-
-/// How strongly a wind blows that rises over `falloff` \[m\] at a depth inside its border: 0 to 1, without edges.
-pub(super) fn strength(depth: f32, falloff: f32) -> f32 {
-    if falloff > 0.0 {
-        let t = (depth / falloff).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    } else {
-        f32::from(u8::from(depth >= 0.0))
     }
 }
 

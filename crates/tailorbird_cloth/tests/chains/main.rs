@@ -9,8 +9,12 @@ mod bits;
 mod conservation;
 mod elastica;
 mod extreme;
+mod irregular;
 mod locking;
 mod memory;
 mod meshes;
 mod scene;
 mod stretch;
+
+#[path = "../../../tailorbird_solver/src/topology/test_meshes.rs"]
+mod test_meshes;

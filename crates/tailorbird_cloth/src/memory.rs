@@ -1,6 +1,0 @@
-//! How much memory things take.
-
-/// What a list takes on the heap \[byte\].
-pub(crate) fn heap<T>(list: &Vec<T>) -> usize {
-    list.capacity() * size_of::<T>()
-}

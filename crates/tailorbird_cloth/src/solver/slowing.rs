@@ -1,0 +1,172 @@
+//! How what is strained is slowed.
+
+use bevy_math::Vec3;
+use tailorbird_solver::{kernels::rigid_motion::RigidMotion, topology::Topology};
+
+use crate::particles::ClothParticles;
+
+/// What is farther apart than the cloth is large, times this, comes back faster [-]: no hand or post draws it out so far.
+const FAR: f32 = 1.5;
+
+/// The rate at which what is farther apart than that comes back [1/s].
+const RATE: f32 = 8.0;
+
+/// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
+const CALMED: f32 = 3.0;
+
+/// The least part that is left in a lull of the speed by which it comes out of what it is in [-].
+const LEAST_OUT: f32 = 0.1;
+
+/// The longest side of a box around points \[m\]; 0 where there is none.
+fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
+    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = points.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).max_element().max(0.0)
+}
+
+/// What the motion of a strained cloth is seen from.
+struct Led {
+    /// How most of what holds it moved since the start of the substep, and the whole where nothing does \[m\].
+    way: Vec3,
+    /// How far what holds or touches it moved \[m\].
+    reach: f32,
+    /// How far what moved farthest of all that holds or touches it did \[m\].
+    farthest: f32,
+    /// How far what holds it is apart \[m\].
+    apart: f32,
+    /// How many particles are held.
+    held: usize,
+}
+
+impl ClothParticles {
+    fn led(&mut self, out: f32) -> Led {
+        let mut scratch = std::mem::take(&mut self.lambda);
+        let led = self.led_with(out, &mut scratch);
+        self.lambda = scratch;
+        led
+    }
+
+    fn led_with(&self, out: f32, lengths: &mut Vec<f32>) -> Led {
+        let held = self.inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0);
+        let ways =
+            (held.clone()).map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
+        lengths.clear();
+        lengths.extend(ways.clone().map(Vec3::length));
+        let farthest = lengths.iter().copied().fold(0.0, f32::max);
+        let touching = if self.contacts.any {
+            self.contacts.swept
+        } else {
+            0.0
+        };
+        // It comes out of what it is in, and where it cannot it comes to rest.
+        let swept = if self.contacts.any && self.contacts.overlaps {
+            touching + out * self.effort.lulled().max(LEAST_OUT)
+        } else {
+            touching
+        };
+        let Some(middle) = lengths.len().checked_sub(1).map(|last| last / 2) else {
+            let whole = RigidMotion::of_all(&self.mass, &self.position, &self.previous_position);
+            return Led {
+                way: whole.displacement,
+                // The ground stops what falls.
+                reach: whole.displacement.length() + swept,
+                farthest: touching,
+                apart: 0.0,
+                held: 0,
+            };
+        };
+        let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
+        // What jumps away from the others leads nobody.
+        let most = ways.filter(|way| way.length() <= 1.5 * middle);
+        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), way| {
+            (sum + way, count + 1.0)
+        });
+        Led {
+            way: sum / f32::max(count, 1.0),
+            reach: middle.max(swept),
+            farthest: farthest.max(touching),
+            apart: extent(held.map(|(i, _)| self.position.get(i))),
+            held: lengths.len(),
+        }
+    }
+
+    /// Slows what is strained, as seen from what holds it, during a substep. `out` is how far colliders push \[m\].
+    pub(crate) fn calm_strained(&mut self, seconds: f32, out: f32) {
+        if !self.effort.recovers {
+            return;
+        }
+        let Led { way, reach, .. } = self.led(out);
+        let most = (self.effort.speed() + self.effort.driven) * seconds + reach;
+        let part = 1.0 - (-CALMED * seconds).exp();
+        for (i, w) in self.inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let before = self.previous_position.get(i);
+                let moved = self.position.get(i) - before - way;
+                let kept = ((1.0 - part) * moved).clamp_length_max(most);
+                self.previous_position.set(i, before + moved - kept);
+            }
+        }
+    }
+
+    /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `out` is how far colliders push, and `size`
+    /// how large the cloth is \[m\].
+    pub(crate) fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
+        if self.contacts.any {
+            let speed = self.contacts.swept / seconds;
+            self.effort.struck = self.effort.struck.max(speed);
+        }
+        if !self.effort.settles() {
+            return;
+        }
+        let led = self.led(out);
+        let around = [led.held, self.contacts.touched];
+        let driven = self.effort.driven;
+        let fastest = driven.max(led.farthest / seconds);
+        self.effort.pass(seconds, fastest, around);
+        let mut speed = 2.0 * self.effort.speed() + driven;
+        if !self.contacts.any {
+            let far = f32::max(FAR * size, led.apart + size);
+            speed += RATE * (extent(self.previous_position.iter()) - far).max(0.0);
+        }
+        let most = speed * seconds + led.reach;
+        for (i, w) in self.inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let start = self.previous_position.get(i) + led.way;
+                let moved = self.position.get(i) - start;
+                if moved.length_squared() > most * most {
+                    self.position.set(i, start + moved.clamp_length_max(most));
+                }
+            }
+        }
+    }
+
+    /// A sheet in a perfect plane that something presses within that plane would stand as a board: pushes its particles out of it, each
+    /// by its own part of 10 µm.
+    pub(crate) fn disturb(&mut self, topology: &Topology) {
+        const FLAT: f32 = 1e-4;
+        const PUSH: f32 = 1e-5;
+        let Self {
+            position,
+            previous_position,
+            inv_mass,
+            contacts,
+            ..
+        } = self;
+        let flat = topology.flat && position.z.iter().all(|z| z.abs() < FLAT);
+        if !flat || !contacts.any {
+            return;
+        }
+        let normal = &contacts.normal;
+        let sideways = |i: usize| normal.x[i].hypot(normal.y[i]) > normal.z[i].abs();
+        if !(0..normal.len()).any(sideways) {
+            return;
+        }
+        for (i, w) in inv_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let push = PUSH * tailorbird_solver::numbers::unit_of(i as u32);
+                position.z[i] += push;
+                previous_position.z[i] += push;
+            }
+        }
+    }
+}

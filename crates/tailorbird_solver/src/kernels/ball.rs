@@ -1,0 +1,56 @@
+//! Balls and half-spaces as solids: for bodies that cloth pushes. What stays or moves by itself has faster kernels
+//! (`sphere.rs`, `half_space.rs`).
+
+use bevy_math::Vec3;
+use fearless_simd::{Simd, prelude::*};
+
+use super::{
+    lanes::{V3, Window},
+    solid::{Near, Solid},
+};
+
+/// A ball around the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// \[m\].
+    pub radius: f32,
+}
+
+impl Solid for Ball {
+    #[inline(always)]
+    fn size(&self) -> f32 {
+        self.radius
+    }
+
+    #[inline(always)]
+    fn near<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Near<S> {
+        let length = p.dot(p).sqrt();
+        Near {
+            distance: length - self.radius,
+            out: p,
+            length,
+        }
+    }
+}
+
+/// All below the height `margin` \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    pub margin: f32,
+}
+
+impl Solid for Ground {
+    #[inline(always)]
+    fn size(&self) -> f32 {
+        f32::MAX
+    }
+
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+        Near {
+            distance: p.y - self.margin,
+            out: V3::splat(simd, Vec3::Y),
+            length: S::f32s::splat(simd, 1.0),
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! A particle against a surface: no penetration, Coulomb friction, no bounce.
+//!
+//! The chain solver looks for contacts twice in a substep. Before it solves, particles are pushed out and their contacts noted
+//! (normal and depth), without friction; the lines then move them along the surface alone. After it, what is left is
+//! pushed out, and friction acts with the depth of both times, as it is the whole push that presses the two together.
+
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use bevy_math::Vec3;
+use fearless_simd::{Simd, prelude::*};
+
+use super::lanes::{Factor, Shared, SharedPoints, V3, Window};
+use crate::{numbers::Numbers, points::Points};
+
+/// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    /// At the start of the substep.
+    pub from: Vec3,
+    /// At the end of the substep.
+    pub to: Vec3,
+}
+
+impl Path {
+    /// Resolves a contact with a surface of unit `normal` that `to` lies `depth` \[m\] below.
+    ///
+    /// 1. `to` is pushed out along the normal.
+    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by at
+    ///    most `friction` · `depth`: the push is what presses the two together.
+    /// 3. What is left of motion away from the surface comes from the push alone, so `from` follows: a particle that was
+    ///    inside does not pop out with a speed.
+    #[inline]
+    pub fn resolve(self, normal: Vec3, depth: f32, friction: f32, surface: Vec3) -> Self {
+        let mut to = self.to + normal * depth;
+        let moved = to - self.from;
+        let away = normal.dot(moved);
+        let sliding = moved - normal * away - surface;
+        let length = sliding.length();
+        let most = friction * depth;
+        if length <= most {
+            to -= sliding;
+        } else {
+            to -= sliding * (most / length);
+        }
+        Self {
+            from: self.from + normal * away.max(0.0),
+            to,
+        }
+    }
+}
+
+/// The contacts of a cloth's particles, noted before its constraints are solved.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts {
+    /// Unit normals, 0 without contact; shorter where a particle carries a part of a body.
+    pub normal: Points,
+    /// How far a particle was pushed out \[m\].
+    pub depth: Numbers,
+    /// By how much the constraints push particles along their normals \[N s\] · substep; empty where no particle carries a part of a
+    /// body.
+    pub pressed: Numbers,
+    /// Whether there are any.
+    pub any: bool,
+    /// Whether any was inside a collider that it did not enter by its own motion, in this step.
+    pub overlaps: bool,
+    /// How far what the particles touch has moved since the start of the substep \[m\].
+    pub swept: f32,
+    /// How many colliders they touch.
+    pub touched: usize,
+}
+
+impl Contacts {
+    /// Forgets all contacts, and that there are any.
+    pub fn clear(&mut self) {
+        for values in [
+            &mut self.normal.x,
+            &mut self.normal.y,
+            &mut self.normal.z,
+            &mut self.depth,
+            &mut self.pressed,
+        ] {
+            values.clear();
+        }
+        (self.any, self.swept, self.touched) = (false, 0.0, 0);
+    }
+
+    /// Forgets all contacts of `len` particles.
+    pub fn reset(&mut self, len: usize) {
+        (self.swept, self.touched) = (0.0, 0);
+        if !self.any && self.depth.len() == len {
+            return;
+        }
+        for values in [
+            &mut self.normal.x,
+            &mut self.normal.y,
+            &mut self.normal.z,
+            &mut self.depth,
+        ] {
+            values.clear();
+            values.resize(len, 0.0);
+        }
+        self.any = false;
+    }
+}
+
+/// When contacts are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Before the constraints are solved: push out and note, without friction.
+    Approach,
+    /// After that, with friction.
+    Final,
+}
+
+/// The particles of a cloth against colliders.
+#[derive(Clone, Copy)]
+pub struct Touching<'a> {
+    pub position: SharedPoints<'a>,
+    pub previous: SharedPoints<'a>,
+    pub inv_mass: Shared<'a>,
+    /// Normals and depths; none where they are not noted.
+    pub contacts: Option<(SharedPoints<'a>, Shared<'a>)>,
+    pub phase: Phase,
+    /// What is done about what is inside.
+    pub out: Out<'a>,
+}
+
+/// What is done about what is inside.
+#[derive(Clone, Copy)]
+pub struct Out<'a> {
+    /// How far what was inside already is pushed out \[m\].
+    pub most: f32,
+    /// Becomes true where that counts.
+    pub overlaps: &'a AtomicBool,
+}
+
+/// What is known of the contacts of particles side by side.
+#[derive(Clone, Copy)]
+pub struct Known<'a, S: Simd> {
+    normal: V3<S>,
+    depth: S::f32s,
+    phase: Phase,
+    out: Out<'a>,
+}
+
+impl<'a> Touching<'a> {
+    /// Makes sure that there is one of each for all particles, and that a range lies within.
+    ///
+    /// # Panics
+    /// Where they are not.
+    pub fn check(&self, range: &Range<usize>) {
+        let len = self.inv_mass.len();
+        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
+        let contacts = self
+            .contacts
+            .is_none_or(|(normal, depth)| points(normal) && depth.len() == len);
+        let all = points(self.position) && points(self.previous) && range.end <= len;
+        assert!(
+            all && contacts,
+            "one of each for {len} particles, {range:?} of them"
+        );
+    }
+
+    #[inline(always)]
+    pub fn known<S: Simd>(self, simd: S, window: Window) -> Known<'a, S> {
+        match (self.contacts, self.phase) {
+            (Some((normal, depth)), Phase::Final) => Known {
+                normal: normal.load_at(simd, window, 0),
+                depth: depth.load_at(simd, window, 0),
+                phase: self.phase,
+                out: self.out,
+            },
+            _ => Known {
+                normal: V3::splat(simd, Vec3::ZERO),
+                depth: S::f32s::splat(simd, 0.0),
+                phase: self.phase,
+                out: self.out,
+            },
+        }
+    }
+
+    /// Stores the paths of those that touch, and notes contacts.
+    #[inline(always)]
+    pub fn store<S: Simd>(
+        self,
+        simd: S,
+        window: Window,
+        touching: S::mask32s,
+        [from, to]: [V3<S>; 2],
+        normal: V3<S>,
+        depth: S::f32s,
+    ) {
+        let before: V3<S> = self.previous.load_at(simd, window, 0);
+        self.previous
+            .store_at(simd, window, 0, from.select(touching, before));
+        let before: V3<S> = self.position.load_at(simd, window, 0);
+        self.position
+            .store_at(simd, window, 0, to.select(touching, before));
+        if let (Some((normals, depths)), Phase::Approach) = (self.contacts, self.phase) {
+            let before: V3<S> = normals.load_at(simd, window, 0);
+            normals.store_at(simd, window, 0, normal.select(touching, before));
+            let before = depths.load_at(simd, window, 0);
+            depths.store_at::<S>(simd, window, 0, touching.select(depth, before));
+        }
+    }
+}
+
+impl<S: Simd> Known<'_, S> {
+    /// Which particles (relative to the centre of a sphere) were in contact with it, and are no further above it than they
+    /// were below.
+    #[inline(always)]
+    pub fn stays(self, simd: S, to: V3<S>, radius: S::f32s) -> S::mask32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let reach = radius + self.depth;
+        let same = to.dot(self.normal).simd_gt(radius * 0.7);
+        self.depth.simd_gt(zero) & same & to.dot(to).simd_lt(reach * reach)
+    }
+
+    /// Which particles were in contact with something, and are no further above a surface than they were below.
+    #[inline(always)]
+    pub fn within(self, simd: S, height: S::f32s) -> S::mask32s {
+        self.depth.simd_gt(S::f32s::splat(simd, 0.0)) & height.simd_lt(self.depth)
+    }
+
+    /// Which particles were in contact with a surface of this normal, and are no further above it than they were below.
+    #[inline(always)]
+    pub fn along(self, simd: S, normal: V3<S>, height: S::f32s) -> S::mask32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let same = normal.dot(self.normal).simd_gt(S::f32s::splat(simd, 0.9));
+        self.depth.simd_gt(zero) & same & height.simd_lt(self.depth)
+    }
+
+    /// How far particles are pushed out that are this deep inside at the end of their paths: all the way, but for those that were inside
+    /// at their start, deeper than this is far, which come out by as much as they went in and no more than is allowed beside that.
+    #[inline(always)]
+    pub fn pushed(
+        self,
+        simd: S,
+        [from, to]: [V3<S>; 2],
+        (normal, depth): (V3<S>, S::f32s),
+        touching: S::mask32s,
+        depth_at_start: impl FnOnce() -> S::f32s,
+    ) -> S::f32s {
+        let zero = S::f32s::splat(simd, 0.0);
+        let most = normal.dot(from - to).max(zero) + self.out.most;
+        let deep = touching & depth.simd_gt(most);
+        if !deep.any_true() {
+            return depth;
+        }
+        let inside = deep & depth_at_start().simd_gt(S::f32s::splat(simd, self.out.most));
+        if inside.any_true() {
+            self.out.overlaps.store(true, Ordering::Relaxed);
+        }
+        inside.select(most, depth)
+    }
+
+    /// What [`Path::resolve`] does to one, side by side; friction in the final phase alone, with the depth that was noted
+    /// added. Of those that do not touch, the result has no meaning.
+    #[inline(always)]
+    pub fn resolve(
+        self,
+        simd: S,
+        touching: S::mask32s,
+        [from, to]: [V3<S>; 2],
+        (normal, depth): (V3<S>, S::f32s),
+        (friction, surface): (f32, V3<S>),
+    ) -> [V3<S>; 2] {
+        let zero = S::f32s::splat(simd, 0.0);
+        let one = S::f32s::splat(simd, 1.0);
+        let to = to + Factor(depth) * normal;
+        let moved = to - from;
+        let away = normal.dot(moved);
+        let from_out = from + Factor(away.max(zero)) * normal;
+        if self.phase == Phase::Approach {
+            return [from_out, to];
+        }
+        let same = normal.dot(self.normal).simd_gt(S::f32s::splat(simd, 0.7));
+        let most = (depth + same.select(self.depth, zero)) * friction;
+        let sliding = moved - Factor(away) * normal - surface;
+        let length2 = sliding.dot(sliding);
+        let slips = touching & length2.simd_gt(most * most);
+        let mut kept = one;
+        if slips.any_true() {
+            kept = slips.select(most / length2.sqrt(), one);
+        }
+        [from_out, to - Factor(kept) * sliding]
+    }
+}
+
+/// The directions of vectors of these lengths; up where they have none.
+#[inline(always)]
+pub fn unit<S: Simd>(simd: S, v: V3<S>, length: S::f32s) -> V3<S> {
+    let any = length.simd_gt(S::f32s::splat(simd, 1e-15));
+    let unit = Factor(S::f32s::splat(simd, 1.0) / length) * v;
+    unit.select(any, V3::splat(simd, Vec3::Y))
+}
+
+/// By how much a squared length may differ from the one that is expected, as a part of it, for the series below.
+const ABOUT: f32 = 0.02;
+
+/// The directions of vectors, where `meant`; up where they have none. Those about as long as expected need no root and no quotient:
+/// for them 1/√(1 + e) is 1 − e/2 + 3e²/8 − 5e³/16 + 35e⁴/128, to within 10⁻⁹.
+#[inline(always)]
+pub fn unit_of_about<S: Simd>(simd: S, v: V3<S>, expected: f32, meant: S::mask32s) -> V3<S> {
+    let square = v.dot(v);
+    let e = square * expected.powi(-2) - 1.0;
+    let series = (((e * (35.0 / 128.0) - 5.0 / 16.0) * e + 3.0 / 8.0) * e - 0.5) * e + 1.0;
+    let about = e.abs().simd_lt(S::f32s::splat(simd, ABOUT));
+    let unit_of_series = Factor(series * expected.recip()) * v;
+    let others = meant & !about;
+    if others.any_true() {
+        return unit_of_series.select(about, unit(simd, v, square.sqrt()));
+    }
+    unit_of_series
+}

@@ -1,0 +1,45 @@
+//! Cylinders. A margin makes them larger and leaves their edges sharp.
+
+use fearless_simd::{Simd, prelude::*};
+
+use super::{
+    cuboid::away,
+    lanes::{V3, Window},
+    solid::{Near, Solid},
+};
+
+/// A cylinder along y around the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// \[m\].
+    pub radius: f32,
+    /// \[m\].
+    pub half_height: f32,
+}
+
+impl Solid for Cylinder {
+    #[inline(always)]
+    fn size(&self) -> f32 {
+        self.radius.min(self.half_height)
+    }
+
+    /// The distance from its side, or from the plane of its nearest end.
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+        let zero = S::f32s::splat(simd, 0.0);
+        let (y, up) = away(simd, p.y);
+        let end = y - self.half_height;
+        let from_axis = (p.x * p.x + p.z * p.z).sqrt();
+        let side = from_axis - self.radius;
+        let on_end = end.simd_ge(side);
+        Near {
+            distance: end.max(side),
+            out: V3 {
+                x: on_end.select(zero, p.x),
+                y: on_end.select(up, zero),
+                z: on_end.select(zero, p.z),
+            },
+            length: on_end.select(S::f32s::splat(simd, 1.0), from_axis),
+        }
+    }
+}

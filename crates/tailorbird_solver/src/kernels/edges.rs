@@ -1,0 +1,137 @@
+//! What the edges of lines resist with.
+
+use fearless_simd::{Simd, prelude::*};
+
+use super::lanes::{Shared, WIDEST};
+
+/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStiffness {
+    /// L \[m\].
+    pub rest_length: f32,
+    /// α̃ = α/h² [1/kg].
+    pub stretch: f32,
+    /// α̃ of the triples [1/kg]; infinite is without bending.
+    pub bend: f32,
+    /// Mass of a particle within the sheet \[kg\]; none has less, apart from those at the border.
+    pub mass: f32,
+}
+
+impl LineStiffness {
+    /// The edges of the lines from `first` on, one in each lane, of `count` in all.
+    #[inline(always)]
+    pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, Whole<S>) {
+        let mut scale = [1.0; WIDEST];
+        if first == 0 {
+            scale[0] = 2.0;
+        }
+        // A sheet has two lines at least.
+        if let Some(last) = scale[..S::f32s::LEN].get_mut(count - 1 - first) {
+            *last = 2.0;
+        }
+        let scale = S::f32s::from_slice(simd, &scale[..S::f32s::LEN]);
+        let l2 = self.rest_length * self.rest_length;
+        let edge = Edge {
+            l2: S::f32s::splat(simd, l2),
+            alpha: scale * (self.stretch * l2),
+        };
+        let whole = Whole {
+            bend: scale * self.bend,
+            bears: S::f32s::splat(simd, 0.25 * self.mass) / scale,
+        };
+        (edge, whole)
+    }
+}
+
+/// What holds all along a line, for each lane.
+#[derive(Clone, Copy)]
+pub struct Whole<S: Simd> {
+    /// α̃ of the triples [1/kg].
+    pub bend: S::f32s,
+    /// |μ| of an edge with κ = 4 w |μ| = 1 \[kg\], w being the largest inverse mass, of particles at the ends half.
+    pub bears: S::f32s,
+}
+
+/// What an edge resists with, for each lane.
+#[derive(Clone, Copy)]
+pub struct Edge<S: Simd> {
+    /// L² \[m²\].
+    pub l2: S::f32s,
+    /// α̃ L² \[m²/kg\].
+    pub alpha: S::f32s,
+}
+
+/// What the edges of chains resist with.
+pub trait Edges<S: Simd>: Copy {
+    /// Those from the particles `k` to the next.
+    fn at(self, simd: S, k: usize) -> Edge<S>;
+}
+
+/// Edges that are all the same along a chain.
+impl<S: Simd> Edges<S> for Edge<S> {
+    #[inline(always)]
+    fn at(self, _simd: S, _k: usize) -> Self {
+        self
+    }
+}
+
+/// Edges that differ: those of a mesh.
+#[derive(Clone, Copy)]
+pub struct MeshLines<'a> {
+    /// L \[m\], 0 where there is no edge.
+    pub rest_length: &'a [f32],
+    /// By what `stretch` is multiplied [-].
+    pub scale: &'a [f32],
+    /// α̃ of an edge whose scale is 1 [1/kg].
+    pub stretch: f32,
+    /// From one edge of a chain to the next.
+    pub stride: usize,
+}
+
+impl<S: Simd> Edges<S> for MeshLines<'_> {
+    #[inline(always)]
+    fn at(self, simd: S, k: usize) -> Edge<S> {
+        let load =
+            |values: &[f32]| S::f32s::from_slice(simd, &values[k * self.stride..][..S::f32s::LEN]);
+        let length = load(self.rest_length);
+        let l2 = length * length;
+        Edge {
+            l2,
+            alpha: load(self.scale) * self.stretch * l2,
+        }
+    }
+}
+
+/// How long the edges of lines side by side are to be \[m\].
+#[derive(Clone, Copy)]
+pub struct LineLengths<'a> {
+    pub lengths: Shared<'a>,
+    /// Where that of the first edge of the first lane is.
+    pub at: usize,
+    /// From one edge of a line to the next.
+    pub stride: usize,
+}
+
+/// Edges of a sheet that are not to be as long as at rest.
+#[derive(Clone, Copy)]
+pub struct SheetLines<'a, S: Simd> {
+    /// At rest.
+    pub edge: Edge<S>,
+    pub lengths: LineLengths<'a>,
+}
+
+impl<S: Simd> Edges<S> for SheetLines<'_, S> {
+    #[inline(always)]
+    fn at(self, simd: S, k: usize) -> Edge<S> {
+        let LineLengths {
+            lengths,
+            at,
+            stride,
+        } = self.lengths;
+        let length = lengths.load(simd, at + k * stride);
+        Edge {
+            l2: length * length,
+            ..self.edge
+        }
+    }
+}

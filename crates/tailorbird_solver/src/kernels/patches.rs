@@ -1,0 +1,133 @@
+//! Particles against a triangle mesh, of which each particle sees one plane.
+//!
+//! The plane is where the surface is nearest to the particle, and holds for as long as the particle stays near the place where it was
+//! looked for. In most substeps of most particles it does, and a contact costs what one with a plane costs.
+
+use bevy_math::Vec3;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+
+use super::{
+    lanes::{Reading, V3, Window, each_window},
+    solid::{Motion, Near, Solid},
+};
+use crate::{numbers::Numbers, points::Points};
+use std::ops::Range;
+
+/// The planes that the particles of a cloth see, in the axes of the mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Patches {
+    /// Unit normals.
+    pub normal: Points,
+    /// Distances of the planes from the origin \[m\].
+    pub offset: Numbers,
+    /// Where the particles were when the planes were looked for \[m\].
+    pub place: Points,
+    /// How far from there the planes hold \[m\]; negative where there is none yet.
+    pub holds: Numbers,
+}
+
+impl Patches {
+    /// Forgets all planes, of `len` particles.
+    pub fn reset(&mut self, len: usize) {
+        for points in [&mut self.normal, &mut self.place] {
+            points.clear();
+            points.resize(len, 0.0);
+        }
+        for numbers in [&mut self.offset, &mut self.holds] {
+            numbers.clear();
+            numbers.resize(len, -1.0);
+        }
+    }
+
+    /// Sets the plane of a particle: through `point`, with this unit normal.
+    pub fn set(&mut self, i: usize, point: Vec3, normal: Vec3, place: Vec3, holds: f32) {
+        self.normal.set(i, normal);
+        self.offset[i] = normal.dot(point);
+        self.place.set(i, place);
+        self.holds[i] = holds;
+    }
+
+    /// How far a point is above the plane of particle `i` \[m\].
+    pub fn height(&self, i: usize, point: Vec3) -> f32 {
+        self.normal.get(i).dot(point) - self.offset[i]
+    }
+}
+
+/// The planes of a cloth's particles, as a solid.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    pub patches: &'a Patches,
+    /// Distance that is kept from the planes \[m\].
+    pub margin: f32,
+}
+
+impl Solid for Seen<'_> {
+    const CONVEX: bool = false;
+    const COMMON: bool = true;
+
+    #[inline(always)]
+    fn size(&self) -> f32 {
+        f32::MAX
+    }
+
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, window: Window, p: V3<S>) -> Near<S> {
+        let out = self.patches.normal.window(simd, window, 0);
+        let offset = Reading(&self.patches.offset).load_at(simd, window);
+        Near {
+            distance: out.dot(p) - offset - self.margin,
+            out,
+            // Unit vectors, or nothing.
+            length: out.dot(out),
+        }
+    }
+}
+
+/// Calls `found` for the free particles of a range whose plane does not hold any more, in order.
+pub fn outdated(
+    level: Level,
+    patches: &Patches,
+    motion: &Motion,
+    (position, inv_mass): (&Points, &[f32]),
+    range: Range<usize>,
+    found: impl FnMut(usize),
+) {
+    dispatch!(level, simd => outdated_with(simd, patches, motion, (position, inv_mass), range, found));
+}
+
+#[inline(always)]
+fn outdated_with<S: Simd>(
+    simd: S,
+    patches: &Patches,
+    motion: &Motion,
+    (position, inv_mass): (&Points, &[f32]),
+    range: Range<usize>,
+    mut found: impl FnMut(usize),
+) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let one = S::f32s::splat(simd, 1.0);
+    let to = V3::splat(simd, motion.to);
+    let inverse = motion.axes.transpose();
+    each_window(
+        simd,
+        range,
+        #[inline(always)]
+        |window| {
+            let place: V3<S> = patches.place.window(simd, window, 0);
+            let local = super::solid::turned(inverse, position.window(simd, window, 0) - to);
+            let moved = local - place;
+            let holds = Reading(&patches.holds).load_at(simd, window);
+            let free = Reading(inv_mass).load_at(simd, window).simd_gt(zero);
+            let still = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
+            let out = free & window.todo(simd) & !still;
+            if out.any_true() {
+                let lanes = out.select(one, zero);
+                for (k, lane) in lanes.as_slice().iter().enumerate() {
+                    if *lane != 0.0 {
+                        found(window.at + k);
+                    }
+                }
+            }
+        },
+    );
+}

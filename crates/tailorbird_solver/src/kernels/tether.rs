@@ -1,0 +1,162 @@
+//! Tethers: no particle gets further from a pin than the way along the sheet.
+//!
+//! What a chain corrects in a pass is a Newton step, exact for small strains alone. A sheet that falls into two pins sees large
+//! ones there; tethers take them away at once, whatever the number of edges between (Kim, Chentanez, Müller 2012).
+
+use std::ops::Range;
+
+use bevy_math::{Vec2, Vec3};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+
+use super::lanes::{Factor, Reading, V3, Window, each_window, lane_numbers};
+use super::{lattice::Sheet, recovery::Recovery};
+
+/// A pin, and how far each particle gets from it.
+#[derive(Clone, Copy)]
+pub struct Tether<W> {
+    /// Where the pin is \[m\].
+    pub anchor: Vec3,
+    /// Where it was at the start of the substep \[m\].
+    pub anchor_before: Vec3,
+    /// How much longer it is than it would be [-], as the pins are further apart than the sheet between them is long.
+    pub longer: f32,
+    /// How far each particle gets from it.
+    pub ways: W,
+}
+
+/// The ways along a sheet that is flat at rest: straight lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Straight {
+    /// That of the pin.
+    pub column: u32,
+    /// That of the pin.
+    pub row: u32,
+    /// Between columns and between rows \[m\].
+    pub spacing: Vec2,
+}
+
+impl Straight {
+    /// How far it is to a particle \[m\].
+    pub fn length(self, column: u32, row: u32) -> f32 {
+        let cells = [column.abs_diff(self.column), row.abs_diff(self.row)];
+        (Vec2::from(cells.map(|n| n as f32)) * self.spacing).length()
+    }
+}
+
+/// Pulls the free particles of a range back to where their tethers, `slack` times as long as at rest, are taut. The ways are
+/// lengths, one for each particle \[m\].
+pub fn solve(
+    level: Level,
+    sheet: Sheet,
+    tethers: &[Option<Tether<Reading>>],
+    (slack, recovery): (f32, Option<Recovery>),
+    particles: Range<usize>,
+) {
+    sheet.check();
+    dispatch!(level, simd => {
+        each_window(
+            simd,
+            particles.clone(),
+            #[inline(always)]
+            |window| {
+                pull(
+                    simd,
+                    sheet,
+                    (tethers, recovery),
+                    window,
+                    0,
+                    #[inline(always)]
+                    |lengths, longer| {
+                        let length = lengths.load_at(simd, window) * (slack * longer);
+                        length * length
+                    },
+                );
+            },
+        );
+    });
+}
+
+/// Pulls the free particles of a range of rows back to where their tethers, `slack` times as long as at rest, are taut.
+pub fn solve_straight(
+    level: Level,
+    sheet: Sheet,
+    tethers: &[Option<Tether<Straight>>],
+    (slack, recovery): (f32, Option<Recovery>),
+    rows: Range<usize>,
+) {
+    sheet.check();
+    dispatch!(level, simd => {
+        for row in rows {
+            each_window(
+                simd,
+                0..sheet.columns,
+                #[inline(always)]
+                |window| {
+                    pull(
+                        simd,
+                        sheet,
+                        (tethers, recovery),
+                        window,
+                        row * sheet.columns,
+                        #[inline(always)]
+                        |ways, longer| {
+                            let [dx, dy] = (ways.spacing * (slack * longer)).to_array();
+                            let along = dy * (row as f32 - ways.row as f32);
+                            let first = window.at as f32 - ways.column as f32;
+                            let across = (lane_numbers(simd) + first) * dx;
+                            across * across + along * along
+                        },
+                    );
+                },
+            );
+        }
+    });
+}
+
+/// Pulls the particles of a window, from `first` on. `l2` tells the square of how far they get.
+///
+/// What is too far away already when the substep begins comes back no faster than the [`Recovery`] says, where there is one, and what
+/// is in contact moves along the surface alone.
+#[inline(always)]
+fn pull<S: Simd, W: Copy>(
+    simd: S,
+    sheet: Sheet,
+    (tethers, recovery): (&[Option<Tether<W>>], Option<Recovery>),
+    window: Window,
+    first: usize,
+    l2: impl Fn(W, f32) -> S::f32s,
+) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let start: V3<S> = sheet.position.load_at(simd, window, first);
+    let mut p = start;
+    let mut taut = false;
+    for tether in tethers.iter().flatten() {
+        // Nothing comes of the lanes beyond a short window, which are not stored.
+        let mut l2 = l2(tether.ways, tether.longer);
+        let d = p - V3::splat(simd, tether.anchor);
+        let q = d.dot(d);
+        let beyond = q.simd_gt(l2);
+        if beyond.any_true() {
+            taut = true;
+            if let Some(recovery) = recovery {
+                let before: V3<S> = recovery.start.load_at(simd, window, first);
+                let before = before - V3::splat(simd, tether.anchor_before);
+                l2 = recovery.target::<S>(before.dot(before), l2);
+            }
+            let excess = (q - l2).max(zero);
+            let s = (excess + excess) / (q * 3.0 + l2);
+            p = p - Factor(beyond.select(s, zero)) * d;
+        }
+    }
+    if taut {
+        if let (Some(normal), None) = (sheet.normal, sheet.pressed) {
+            let n: V3<S> = normal.load_at(simd, window, first);
+            p = p - Factor(n.dot(p - start)) * n;
+        }
+        let w = sheet.inv_mass.load_at(simd, window, first);
+        let free = w.simd_gt(zero);
+        sheet
+            .position
+            .store_at(simd, window, first, p.select(free, start));
+    }
+}

@@ -1,0 +1,33 @@
+//! What a cloth is and how it moves, as data and functions, without an ECS.
+//!
+//! This is the inside of `tailorbird_cloth`, whose components and systems are what games use, and what keeps its promises from one
+//! version to the next. Here are
+//!
+//! - the rest shape and what is computed from it once: [`shape`], [`topology`];
+//! - arrays of particles: [`points`], [`numbers`];
+//! - the arithmetic, one file for each equation, which no documentation lists: `kernels`, explained in `kernels/README.md`;
+//! - several threads at one cloth: `crew`.
+//!
+//! Units are metres, kilograms and seconds.
+
+#[doc(hidden)]
+pub mod crew;
+#[doc(hidden)]
+pub mod effort;
+pub mod error;
+#[doc(hidden)]
+pub mod grant;
+pub mod instruction_set;
+#[doc(hidden)]
+pub mod kernels;
+#[doc(hidden)]
+pub mod memory;
+pub mod numbers;
+pub mod points;
+pub mod shape;
+pub mod topology;
+pub mod wall_clock;
+pub mod wind;
+
+/// Whether this crate was built without optimisation: its kernels are some 200 times as slow as they need be.
+pub const UNOPTIMISED: bool = cfg!(unoptimised);

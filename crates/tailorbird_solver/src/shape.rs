@@ -1,0 +1,232 @@
+//! The rest shape of a cloth.
+
+use std::{collections::hash_map::DefaultHasher, hash::Hasher};
+
+use bevy_math::{UVec2, Vec2, Vec3};
+use bevy_reflect::prelude::*;
+
+use crate::{error::ShapeError, topology::repair::Repaired};
+
+/// The rest shape of a cloth.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub enum ClothShape {
+    /// A rectangle in the x-y plane that faces +z. Columns run along +x, rows along −y: row 0 is the top.
+    Grid {
+        /// Width and height \[m\].
+        size: Vec2,
+        /// Columns and rows of particles, at least 2 × 2.
+        resolution: UVec2,
+        /// Which point of the rectangle lies at the entity's origin, as fractions of the width from the left and of
+        /// the height from the top. (0, 0), the default, is the top left corner: particle (0, 0).
+        #[cfg_attr(feature = "serialize", serde(default))]
+        origin: Vec2,
+    },
+    /// Triangles.
+    Mesh {
+        /// Vertices \[m\].
+        positions: Vec<Vec3>,
+        /// Three for each triangle, counter-clockwise seen from the front.
+        indices: Vec<u32>,
+        /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
+        /// hold together.
+        #[cfg_attr(feature = "serialize", serde(default = "weld_distance"))]
+        weld_distance: f32,
+    },
+}
+
+/// Of a file that does not say.
+#[cfg(feature = "serialize")]
+fn weld_distance() -> f32 {
+    ClothShape::WELD_DISTANCE
+}
+
+impl ClothShape {
+    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
+    pub const WELD_DISTANCE: f32 = 1e-5;
+
+    /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner is at the origin.
+    pub fn grid(size: Vec2, resolution: UVec2) -> Self {
+        Self::Grid {
+            size,
+            resolution,
+            origin: Vec2::ZERO,
+        }
+    }
+
+    /// Triangles, given as vertices \[m\] and three indices for each triangle.
+    pub fn mesh(positions: impl Into<Vec<Vec3>>, indices: impl Into<Vec<u32>>) -> Self {
+        Self::Mesh {
+            positions: positions.into(),
+            indices: indices.into(),
+            weld_distance: Self::WELD_DISTANCE,
+        }
+    }
+
+    /// Checks the shape without building it.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        /// The most particles of a grid: as many as f32 counts exactly.
+        const MOST_PARTICLES: u64 = 1 << 24;
+        match self {
+            Self::Grid {
+                size,
+                resolution,
+                origin,
+            } => {
+                if !size.is_finite() || size.min_element() <= 0.0 {
+                    return Err(ShapeError::Size { value: *size });
+                }
+                let particles = u64::from(resolution.x) * u64::from(resolution.y);
+                if resolution.cmplt(UVec2::splat(2)).any() || particles > MOST_PARTICLES {
+                    return Err(ShapeError::Resolution { value: *resolution });
+                }
+                if !origin.is_finite() {
+                    return Err(ShapeError::Origin { value: *origin });
+                }
+                Ok(())
+            }
+            Self::Mesh {
+                positions,
+                indices,
+                weld_distance,
+            } => {
+                if !(*weld_distance >= 0.0 && weld_distance.is_finite()) {
+                    return Err(ShapeError::WeldDistance {
+                        value: *weld_distance,
+                    });
+                }
+                check_positions(positions.iter().copied())?;
+                if indices.len() % 3 != 0 {
+                    return Err(ShapeError::IndexCount {
+                        value: indices.len(),
+                    });
+                }
+                let vertices = positions.len();
+                if let Some((at, value)) = indices
+                    .iter()
+                    .enumerate()
+                    .find(|(_, i)| **i as usize >= vertices)
+                {
+                    return Err(ShapeError::IndexOutOfRange {
+                        at,
+                        value: *value,
+                        vertices,
+                    });
+                }
+                if indices.is_empty() {
+                    return Err(ShapeError::NoTriangles {
+                        vertices,
+                        triangles: 0,
+                    });
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Positions of the particles at rest \[m\], by their given numbers; none where the shape is wrong.
+    pub fn rest_positions(&self) -> Vec<Vec3> {
+        if self.check().is_err() {
+            return Vec::new();
+        }
+        match self {
+            Self::Grid {
+                size,
+                resolution,
+                origin,
+            } => {
+                let last = (resolution - 1).as_vec2();
+                let mut positions = Vec::with_capacity((resolution.x * resolution.y) as usize);
+                positions.extend(
+                    (0..resolution.y)
+                        .flat_map(|row| {
+                            (0..resolution.x).map(move |column| UVec2::new(column, row))
+                        })
+                        .map(|at| (at.as_vec2() / last - *origin) * *size)
+                        .map(|p| Vec3::new(p.x, -p.y, 0.0)),
+                );
+                positions
+            }
+            Self::Mesh {
+                positions,
+                indices,
+                weld_distance,
+            } => Repaired::new(positions, indices, *weld_distance, Vec3::ONE).positions,
+        }
+    }
+
+    /// Width and height at rest \[m\] of a grid.
+    pub fn size(&self) -> Option<Vec2> {
+        match *self {
+            Self::Grid { size, .. } => Some(size),
+            Self::Mesh { .. } => None,
+        }
+    }
+
+    /// Columns and rows of a grid.
+    pub fn resolution(&self) -> Option<UVec2> {
+        match *self {
+            Self::Grid { resolution, .. } => Some(resolution),
+            Self::Mesh { .. } => None,
+        }
+    }
+
+    /// 128 bits that stand for all bits of a shape and its scale: two that differ do not meet in practice, so that none has to be
+    /// kept to compare with.
+    pub fn fingerprint(&self, scale: Vec3) -> u128 {
+        let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
+        halves[1].write_u8(1);
+        let mut write = |number: u32| halves.iter_mut().for_each(|half| half.write_u32(number));
+        scale.to_array().iter().for_each(|v| write(v.to_bits()));
+        match self {
+            Self::Grid {
+                size,
+                resolution,
+                origin,
+            } => {
+                let numbers = [size.to_array(), origin.to_array()].map(|p| p.map(f32::to_bits));
+                let numbers = numbers.as_flattened().iter();
+                [0].iter()
+                    .chain(&resolution.to_array())
+                    .chain(numbers)
+                    .copied()
+                    .for_each(write);
+            }
+            Self::Mesh {
+                positions,
+                indices,
+                weld_distance,
+            } => {
+                [1, weld_distance.to_bits(), positions.len() as u32]
+                    .into_iter()
+                    .for_each(&mut write);
+                let coordinates = positions.iter().flat_map(Vec3::to_array);
+                coordinates.map(f32::to_bits).for_each(&mut write);
+                indices.iter().copied().for_each(write);
+            }
+        }
+        let [low, high] = halves.map(|half| u128::from(half.finish()));
+        high << 64 | low
+    }
+}
+
+/// What is wrong with the vertices of a mesh.
+pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), ShapeError> {
+    /// The farthest from the origin \[m\] in any direction: f32 counts in steps of 6 cm there.
+    const FARTHEST: f32 = 1e6;
+    for (vertex, value) in positions.enumerate() {
+        if !value.is_finite() {
+            return Err(ShapeError::NonFinitePosition { vertex, value });
+        }
+        if value.abs().max_element() > FARTHEST {
+            return Err(ShapeError::PositionTooFar { vertex, value });
+        }
+    }
+    Ok(())
+}

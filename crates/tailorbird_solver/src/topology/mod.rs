@@ -1,0 +1,285 @@
+//! What is computed once from the rest shape: particles, triangles, constraints. Immutable, shared.
+
+pub mod chains;
+pub mod coloring;
+pub mod constraints;
+pub mod edges;
+pub mod fabric;
+pub mod geodesic;
+pub mod grid;
+pub mod hinges;
+pub mod lattice;
+pub mod mesh_edges;
+pub mod neighbors;
+pub mod order;
+mod orientation;
+pub mod recognize;
+pub mod repair;
+pub mod report;
+#[cfg(test)]
+pub mod test_meshes;
+pub mod triangles;
+pub mod weave;
+pub mod weld;
+
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicU64, Ordering},
+};
+
+use bevy_math::{UVec2, Vec3};
+
+use crate::{
+    error::ShapeError,
+    memory::heap,
+    shape::{ClothShape, check_positions},
+};
+use constraints::DistanceConstraints;
+use fabric::Fabric;
+use hinges::HingeConstraints;
+use lattice::Lattice;
+use neighbors::{NeighborLists, Neighbors};
+use order::ParticleOrder;
+use repair::TriangleCopy;
+use report::MeshReport;
+use triangles::Triangles;
+
+/// What is computed once from the rest shape. Particles are in storage order throughout.
+#[derive(Clone, Debug, Default)]
+pub struct Topology {
+    /// Different for each topology that was ever built; 0 is the empty one. What is derived from a topology is
+    /// rebuilt when this changes.
+    pub revision: u64,
+    /// The order in which the particles are stored.
+    pub order: ParticleOrder,
+    /// Where the particles lie at rest, in the cloth's frame, scale included \[m\].
+    pub rest_positions: Vec<Vec3>,
+    /// Columns and rows, where the cloth is a grid.
+    pub grid: Option<UVec2>,
+    /// Where the particles lie in columns and rows at equal spacing.
+    pub lattice: Option<Lattice>,
+    /// What holds it together where they do not.
+    pub fabric: Option<Fabric>,
+    /// What resists bending, but in a flat lattice.
+    pub hinges: HingeConstraints,
+    /// Whether the particles lie in one plane, nowhere on top of each other.
+    pub flat: bool,
+    /// The triangles of a mesh; none of a grid.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle which one of the source it is; empty where they are the same.
+    source_triangles: Vec<u32>,
+    /// The triangles of the source that are turned around, ascending.
+    turned: Vec<u32>,
+    /// The triangles of the source that are there twice.
+    copies: Vec<TriangleCopy>,
+    /// For each vertex of the source the particle that moves it; empty for grids, where they are the same.
+    particle_of_vertex: Vec<u32>,
+    /// The scale that is part of `rest_positions`.
+    pub scale: Vec3,
+    /// Area of each triangle of a mesh at rest \[m²\]; none of a grid.
+    pub triangle_areas: Vec<f32>,
+    /// A third of the area of the triangles around each particle \[m²\]; none of a lattice.
+    areas: Vec<f32>,
+    /// Mean area for each particle \[m²\].
+    cell_area: f32,
+    /// Made when they are asked for.
+    constraints: OnceLock<DistanceConstraints>,
+    /// Made when they are asked for; never for a lattice.
+    neighbors: OnceLock<NeighborLists>,
+    /// What was left out.
+    pub dropped: Vec<ShapeError>,
+    /// What was found in a mesh; nothing in a grid.
+    pub report: MeshReport,
+}
+
+static REVISION: AtomicU64 = AtomicU64::new(1);
+
+impl Topology {
+    /// Builds the topology of a shape that is scaled by `scale`.
+    ///
+    /// # Errors
+    /// What is wrong with the shape or the scale. What is wrong with a mesh and can be repaired is, and is told in
+    /// [`Topology::report`]; triangles that are left out are listed in [`Topology::dropped`] as well.
+    pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ShapeError> {
+        shape.check()?;
+        if !scale.is_finite() || scale.to_array().contains(&0.0) {
+            return Err(ShapeError::Scale { value: scale });
+        }
+        let mut topology = match shape {
+            ClothShape::Grid { resolution, .. } => {
+                let mut rest = shape.rest_positions();
+                rest.iter_mut().for_each(|p| *p *= scale);
+                grid::build(rest, *resolution)
+            }
+            ClothShape::Mesh {
+                positions,
+                indices,
+                weld_distance,
+            } => {
+                check_positions(positions.iter().map(|p| *p * scale))?;
+                edges::build(positions, indices, *weld_distance, scale)?
+            }
+        };
+        topology.revision = REVISION.fetch_add(1, Ordering::Relaxed);
+        topology.scale = scale;
+        topology.measure_areas();
+        Ok(topology)
+    }
+
+    /// The number of particles.
+    pub fn particles(&self) -> usize {
+        self.rest_positions.len()
+    }
+
+    /// Particles at the corners of each triangle, counter-clockwise seen from the front.
+    #[inline]
+    pub fn triangles(&self) -> Triangles<'_> {
+        match self.grid {
+            Some(size) => Triangles::of_grid(size),
+            None => Triangles::of_list(&self.triangles),
+        }
+    }
+
+    /// For each triangle which one of the source it is.
+    pub fn source_triangles(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let of = |triangle| self.source_triangles.get(triangle).copied();
+        (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(triangle as u32))
+    }
+
+    /// The triangles of the source that are turned around, and the copies of those, ascending.
+    pub fn turned_triangles(&self) -> &[u32] {
+        &self.turned
+    }
+
+    /// The triangles of the source that have the corners of one before, ascending.
+    pub fn copied_triangles(&self) -> &[TriangleCopy] {
+        &self.copies
+    }
+
+    /// The particle that moves a vertex of the source.
+    ///
+    /// # Panics
+    /// When the vertex is out of range.
+    #[inline]
+    pub fn particle_of_vertex(&self, vertex: usize) -> u32 {
+        if self.grid.is_some() {
+            assert!(vertex < self.particles(), "vertex {vertex} of a grid");
+            return vertex as u32;
+        }
+        self.particle_of_vertex[vertex]
+    }
+
+    /// For each vertex of the source the particle that moves it.
+    pub fn particles_of_vertices(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let vertices = if self.grid.is_some() {
+            self.particles()
+        } else {
+            self.particle_of_vertex.len()
+        };
+        (0..vertices).map(|vertex| self.particle_of_vertex(vertex))
+    }
+
+    /// Area of each triangle at rest \[m²\].
+    pub fn triangle_areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        let cell = self.lattice.map_or(0.0, Lattice::cell_area);
+        let of = |triangle| self.triangle_areas.get(triangle).copied();
+        (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(0.5 * cell))
+    }
+
+    /// For each particle a third of the area of the triangles around it, in a lattice a quarter of the cells around it
+    /// \[m²\].
+    pub fn areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        let of = |particle| match self.lattice {
+            // However its cells are cut.
+            Some(lattice) => lattice.area_of(particle),
+            None => self.areas[particle],
+        };
+        (0..self.particles()).map(of)
+    }
+
+    /// The springs of the classic solver, in batches that share no particle. They are made when they are asked for first.
+    pub fn constraints(&self) -> &DistanceConstraints {
+        self.constraints.get_or_init(|| match self.grid {
+            Some(size) => grid::constraints(size.x, size.y, &self.rest_positions),
+            None => edges::constraints(&self.triangles, &self.rest_positions),
+        })
+    }
+
+    /// How many springs [`Self::constraints`] has. For a grid they are not made.
+    pub fn constraint_count(&self) -> usize {
+        match self.grid {
+            Some(size) => grid::constraint_count(size.x as usize, size.y as usize),
+            None => self.constraints().len(),
+        }
+    }
+
+    /// Particles joined to one by an edge or a diagonal; none where the particle is out of range.
+    pub fn neighbors(&self, particle: u32) -> Neighbors<'_> {
+        if let Some(lattice) = self.lattice {
+            return Neighbors::in_lattice(lattice, particle);
+        }
+        let lists = self
+            .neighbors
+            .get_or_init(|| edges::neighbors(&self.triangles, &self.rest_positions));
+        Neighbors::Listed(lists.of(particle))
+    }
+
+    /// What it takes on the heap by now, \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.rest_positions)
+            + heap(&self.triangles)
+            + heap(&self.source_triangles)
+            + heap(&self.particle_of_vertex)
+            + heap(&self.triangle_areas)
+            + heap(&self.areas)
+            + heap(&self.dropped)
+            + heap(&self.turned)
+            + heap(&self.copies)
+            + heap(&self.report.islands)
+            + self.order.memory_bytes()
+            + self.hinges.memory_bytes()
+            + self.fabric.as_ref().map_or(0, Fabric::memory_bytes)
+            + self
+                .constraints
+                .get()
+                .map_or(0, DistanceConstraints::memory_bytes)
+            + self.neighbors.get().map_or(0, NeighborLists::memory_bytes)
+    }
+
+    /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.
+    pub fn stretch_edges(&self) -> Vec<([u32; 2], f32)> {
+        let measured = |[a, b]: [u32; 2]| {
+            let [p, q] = [a, b].map(|i| self.rest_positions[i as usize]);
+            ([a, b], p.distance(q))
+        };
+        match (self.lattice, &self.fabric) {
+            (Some(lattice), _) => lattice.edges().map(measured).collect(),
+            (None, Some(fabric)) => fabric.chains().edges().collect(),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// Mean area for each particle \[m²\].
+    pub fn cell_area(&self) -> f32 {
+        self.cell_area
+    }
+
+    fn measure_areas(&mut self) {
+        if self.grid.is_none() {
+            let area = |triangle: &[u32; 3]| {
+                let [a, b, c] = triangle.map(|i| self.rest_positions[i as usize]);
+                0.5 * (b - a).cross(c - a).length()
+            };
+            self.triangle_areas = self.triangles.iter().map(area).collect();
+        }
+        if self.lattice.is_none() {
+            self.areas = vec![0.0; self.particles()];
+            for (triangle, area) in self.triangles.iter().zip(&self.triangle_areas) {
+                for &i in triangle {
+                    self.areas[i as usize] += area / 3.0;
+                }
+            }
+        }
+        self.cell_area = self.triangle_areas().sum::<f32>() / self.particles().max(1) as f32;
+    }
+}
