@@ -14,6 +14,7 @@ mod demo_hands;
 mod detail;
 mod determinism;
 mod drag;
+mod drawn;
 mod drawn_holds;
 mod fabric;
 mod forces;

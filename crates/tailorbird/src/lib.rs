@@ -68,6 +68,7 @@ pub mod debug;
 pub mod diagnostics;
 #[cfg(feature = "picking")]
 pub mod drag;
+pub mod drawn;
 #[cfg(feature = "render")]
 pub mod fabric;
 #[cfg(feature = "render")]

@@ -10,8 +10,9 @@ use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
 
 pub use advance::advance_frames;
+pub use split::split_mirrored;
 use split::{check_shear, split_like};
-pub(crate) use split::{shortest, split, split_mirrored};
+pub(crate) use split::{shortest, split};
 
 use crate::{
     cloth::Cloth,

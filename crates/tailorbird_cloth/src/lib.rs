@@ -54,7 +54,6 @@ pub mod build;
 pub mod cloth;
 pub mod collider;
 pub mod diagnostics;
-pub mod drawn;
 pub mod error;
 pub mod forces;
 pub mod frame;
@@ -82,7 +81,6 @@ pub mod topology;
 #[cfg(feature = "serialize")]
 mod unbounded;
 pub mod validate;
-pub mod vertices;
 pub mod weights;
 pub mod wind;
 

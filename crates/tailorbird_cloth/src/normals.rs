@@ -71,8 +71,8 @@ impl ClothNormals {
         self.current.get(i)
     }
 
-    /// The normals after the step before, and after the last one.
-    pub(crate) fn ends(&self) -> [&Points; 2] {
+    /// The normals after the step before, and after the last one, in storage order.
+    pub fn ends(&self) -> [&Points; 2] {
         [&self.previous, &self.current]
     }
 

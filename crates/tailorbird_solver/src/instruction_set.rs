@@ -45,3 +45,18 @@ impl InstructionSet {
         }
     }
 }
+
+/// All levels of this machine, the plainest first.
+pub fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![Level::fallback()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+        levels.extend(best.as_avx512().map(Level::Avx512));
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    levels.push(best);
+    levels
+}

@@ -8,7 +8,6 @@ use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexAttributeValues};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
-    drawn::ClothDrawnHolds,
     normals::{ClothNormals, ClothShading},
     topology::ClothTopology,
 };
@@ -17,6 +16,7 @@ use super::{
     ClothMeshWrite, follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
     vertices::Vertices,
 };
+use crate::drawn::ClothDrawnHolds;
 
 /// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
 #[derive(Component)]

@@ -2,17 +2,15 @@
 
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};
-use tailorbird_cloth::{
-    drawn::ClothDrawnHolds,
-    normals::ClothNormals,
-    particles::ClothParticles,
-    vertices::{Interleaved, SheetVertices, VertexOrder},
-};
+use tailorbird_cloth::{normals::ClothNormals, particles::ClothParticles};
 
 use super::{
+    interleave::{Interleaved, SheetVertices},
+    interleaved::{VertexOrder, write_normals, write_positions, write_sheet},
     packed::Packed,
     tangents::{Surface, Tangents},
 };
+use crate::drawn::ClothDrawnHolds;
 
 /// Vertices that a task has at least.
 pub(super) const PIECE: usize = 8192;
@@ -149,7 +147,10 @@ impl Follow {
                 scale,
             } = drawn;
             let factors = scale.recip();
-            particles.write_sheet(fraction, holds, normals, factors, k * rows, vertices);
+            let first = k * rows;
+            write_sheet(
+                particles, normals, fraction, holds, factors, first, vertices,
+            );
         });
         true
     }
@@ -178,7 +179,8 @@ impl Follow {
         let Drawn {
             fraction, scale, ..
         } = drawn;
-        drawn.particles.write_interpolated(
+        write_positions(
+            drawn.particles,
             fraction,
             drawn.holds,
             scale.recip(),
@@ -189,7 +191,8 @@ impl Follow {
                 offset: position,
             },
         );
-        drawn.normals.write_interpolated(
+        write_normals(
+            drawn.normals,
             fraction,
             order(1, &self.normal_of_vertex[vertices.clone()]),
             Interleaved {

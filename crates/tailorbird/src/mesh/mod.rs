@@ -6,6 +6,10 @@ mod collider;
 mod follow;
 mod from_mesh;
 pub mod garments;
+mod interleave;
+#[cfg(test)]
+mod interleave_tests;
+mod interleaved;
 mod packed;
 mod parts;
 mod pins;

@@ -12,7 +12,6 @@ use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
-    drawn::ClothDrawnHolds,
     frame::ClothFrame,
     normals::ClothNormals,
     particles::ClothParticles,
@@ -28,6 +27,7 @@ use super::{
     packed::Packed,
     slab::{VertexUploads, Vertices},
 };
+use crate::drawn::ClothDrawnHolds;
 
 /// Whether meshes are written as assets: then they are before their changes are told.
 pub(super) fn writes_assets(

@@ -162,7 +162,7 @@ impl AttachedParticles {
 
     /// How a target moved from where it was at a part of the last step, 0 to 1, to where it is now, as seen from a frame that does
     /// not move; without changes of scale. None where it holds nothing.
-    pub(crate) fn motion(
+    pub fn motion(
         &self,
         target: Entity,
         now: &GlobalTransform,

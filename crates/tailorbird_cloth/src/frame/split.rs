@@ -60,8 +60,11 @@ pub(super) fn split_like(
     Ok((Isometry3d::new(place.translation, rotation), scale))
 }
 
-/// [`split`], with the scale's signs as given.
-pub(crate) fn split_mirrored(
+/// A transform as a rigid frame and a scale whose signs are those of `signs`.
+///
+/// # Errors
+/// What is wrong with the transform.
+pub fn split_mirrored(
     transform: &GlobalTransform,
     signs: Vec3,
 ) -> Result<(Isometry3d, Vec3), ClothErrorKind> {

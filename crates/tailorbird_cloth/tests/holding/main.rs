@@ -8,7 +8,6 @@ mod attachments;
 mod bad_input;
 mod bits;
 mod breaking;
-mod drawn;
 mod hand;
 mod motion;
 mod put_on;

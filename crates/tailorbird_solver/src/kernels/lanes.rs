@@ -325,17 +325,5 @@ impl Points {
     }
 }
 
-/// All instruction sets of this machine, the plainest first.
 #[cfg(test)]
-pub fn levels() -> Vec<fearless_simd::Level> {
-    use fearless_simd::Level;
-    let best = Level::new();
-    let mut levels = vec![Level::fallback()];
-    #[cfg(target_arch = "x86_64")]
-    {
-        levels.extend(best.as_sse2().map(Level::Sse2));
-        levels.extend(best.as_avx2().map(Level::Avx2));
-        levels.extend(best.as_avx512().map(Level::Avx512));
-    }
-    levels
-}
+pub use crate::instruction_set::levels;

@@ -12,9 +12,6 @@ pub mod distance;
 pub mod edges;
 pub mod half_space;
 pub mod hinge;
-pub mod interleave;
-#[cfg(test)]
-mod interleave_tests;
 pub mod lanes;
 pub mod lattice;
 pub mod limit;

@@ -1,27 +1,40 @@
 //! Held particles are drawn where their target is drawn.
 
-use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
-use bevy_transform::components::{GlobalTransform, Transform};
-use tailorbird_cloth::{attachment::AttachedParticles, drawn::ClothDrawnHolds, prelude::*};
+use bevy::prelude::*;
+use tailorbird::{cloth::attachment::AttachedParticles, drawn::ClothDrawnHolds, prelude::*};
 
-use crate::world::{World, square};
+use crate::world::{Sim, square};
+
+/// A sheet of 1 m × 1 m whose threads do not stretch.
+fn sheet(n: u32) -> impl Bundle {
+    let material = ClothMaterial {
+        warp_compliance: 0.0,
+        weft_compliance: 0.0,
+        damping: 0.0,
+        ..ClothMaterial::cotton()
+    };
+    (square(n), material, ClothSleep::never())
+}
+
+fn attach(sim: &mut Sim, cloth: Entity, to: Entity, attachment: ClothAttachment) {
+    sim.spawn((attachment.to(to), AttachmentOf(cloth)));
+}
 
 /// Where all particles are drawn, in the world, where the cloth and its targets are now.
 fn drawn(
-    world: &World,
+    sim: &Sim,
     cloth: Entity,
     place: Transform,
     fraction: f32,
     now: impl Fn(Entity) -> Option<Transform>,
 ) -> Vec<Vec3> {
     let mut holds = ClothDrawnHolds::default();
-    let particles = world.particles(cloth);
+    let particles = sim.particles(cloth);
     let place = GlobalTransform::from(place);
     holds.update(
-        world.get::<ClothTopology>(cloth),
+        sim.get::<ClothTopology>(cloth),
         particles,
-        world.get::<AttachedParticles>(cloth),
+        sim.get::<AttachedParticles>(cloth),
         &place,
         fraction,
         |target| Some(now(target)?.into()),
@@ -32,16 +45,16 @@ fn drawn(
 
 #[test]
 fn a_pin_is_where_its_bone_is_drawn_and_the_rest_follows_smoothly() {
-    let mut world = World::new();
-    let hand = world.spawn(Transform::default());
-    let cloth = world.spawn(square(33));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
-    world.steps(20);
+    let mut sim = Sim::vacuum();
+    let hand = sim.spawn(Transform::default());
+    let cloth = sim.spawn(sheet(33));
+    attach(&mut sim, cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    sim.step(20);
     let moved = Transform::from_xyz(0.05, 0.1, 0.02).with_rotation(Quat::from_rotation_z(0.1));
     let place = Transform::from_xyz(0.0, 0.01, 0.0).with_rotation(Quat::from_rotation_y(0.03));
     for fraction in [0.0, 0.4, 1.0] {
-        let still = drawn(&world, cloth, place, fraction, |_| None);
-        let at = drawn(&world, cloth, place, fraction, |_| Some(moved));
+        let still = drawn(&sim, cloth, place, fraction, |_| None);
+        let at = drawn(&sim, cloth, place, fraction, |_| Some(moved));
         let offset = |i: usize| at[i] - still[i];
         for (i, at) in at.iter().enumerate().take(33) {
             let rest = Vec3::new(i as f32 / 32.0 - 0.5, 0.5, 0.0);
@@ -62,15 +75,20 @@ fn a_pin_is_where_its_bone_is_drawn_and_the_rest_follows_smoothly() {
 
 #[test]
 fn nothing_is_drawn_elsewhere_where_nothing_moved() {
-    let mut world = World::new();
-    let hand = world.spawn(Transform::from_xyz(0.3, 0.2, 0.1));
-    let cloth = world.spawn(square(17));
-    world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
-    world.steps(30);
-    let hand_at = *world.get::<Transform>(hand);
+    let mut sim = Sim::vacuum();
+    let hand = sim.spawn(Transform::from_xyz(0.3, 0.2, 0.1));
+    let cloth = sim.spawn(sheet(17));
+    attach(
+        &mut sim,
+        cloth,
+        hand,
+        ClothAttachment::corner(GridCorner::TopLeft),
+    );
+    sim.step(30);
+    let hand_at = *sim.get::<Transform>(hand);
     let here = Transform::default();
-    let still = drawn(&world, cloth, here, 0.7, |_| None);
-    let at = drawn(&world, cloth, here, 0.7, |_| Some(hand_at));
+    let still = drawn(&sim, cloth, here, 0.7, |_| None);
+    let at = drawn(&sim, cloth, here, 0.7, |_| Some(hand_at));
     for (a, b) in still.iter().zip(&at) {
         assert!(a.distance(*b) < 1e-6);
     }
@@ -78,16 +96,16 @@ fn nothing_is_drawn_elsewhere_where_nothing_moved() {
 
 #[test]
 fn each_of_two_targets_moves_its_own_side_and_pins_stay() {
-    let mut world = World::new();
-    let hands = [0.0, 1.0].map(|x| world.spawn(Transform::from_xyz(x, 0.0, 0.0)));
-    let cloth = world.spawn((square(17), ClothPins::corners([GridCorner::BottomLeft])));
+    let mut sim = Sim::vacuum();
+    let hands = [0.0, 1.0].map(|x| sim.spawn(Transform::from_xyz(x, 0.0, 0.0)));
+    let cloth = sim.spawn((sheet(17), ClothPins::corners([GridCorner::BottomLeft])));
     for (hand, corner) in hands.into_iter().zip(GridCorner::TOP) {
-        world.attach(cloth, hand, ClothAttachment::corner(corner));
+        attach(&mut sim, cloth, hand, ClothAttachment::corner(corner));
     }
-    world.steps(3);
+    sim.step(3);
     let here = Transform::default();
-    let still = drawn(&world, cloth, here, 1.0, |_| None);
-    let at = drawn(&world, cloth, here, 1.0, |target| {
+    let still = drawn(&sim, cloth, here, 1.0, |_| None);
+    let at = drawn(&sim, cloth, here, 1.0, |target| {
         let x = if target == hands[0] { 0.0 } else { 1.0 };
         let up = if target == hands[0] { 0.1 } else { 0.0 };
         Some(Transform::from_xyz(x, up, 0.0))
@@ -102,15 +120,15 @@ fn each_of_two_targets_moves_its_own_side_and_pins_stay() {
 
 #[test]
 fn where_all_that_holds_it_hopped_the_whole_cloth_is_drawn_there() {
-    let mut world = World::new();
-    let hand = world.spawn(Transform::default());
-    let cloth = world.spawn(square(33));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
-    world.steps(20);
+    let mut sim = Sim::vacuum();
+    let hand = sim.spawn(Transform::default());
+    let cloth = sim.spawn(sheet(33));
+    attach(&mut sim, cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    sim.step(20);
     let here = Transform::default();
     let hopped = Transform::from_xyz(2.0, 0.5, 0.0).with_rotation(Quat::from_rotation_y(1.0));
-    let still = drawn(&world, cloth, here, 1.0, |_| None);
-    let at = drawn(&world, cloth, here, 1.0, |_| Some(hopped));
+    let still = drawn(&sim, cloth, here, 1.0, |_| None);
+    let at = drawn(&sim, cloth, here, 1.0, |_| Some(hopped));
     for (from, to) in still.iter().zip(&at) {
         assert!(to.distance(hopped.transform_point(*from)) < 1e-5);
     }

@@ -12,7 +12,8 @@
 //! # use bevy_ecs::prelude::*;
 //! # use bevy_math::Vec3;
 //! # use bevy_transform::components::GlobalTransform;
-//! # use tailorbird_cloth::{attachment::AttachedParticles, drawn::ClothDrawnHolds, prelude::*};
+//! # use tailorbird::{drawn::ClothDrawnHolds, prelude::*};
+//! # use tailorbird_cloth::attachment::AttachedParticles;
 //! fn write_mesh(
 //!     mut cloths: Query<(
 //!         &GlobalTransform, &ClothTopology, &ClothParticles, &AttachedParticles, &mut ClothDrawnHolds,
@@ -36,9 +37,11 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
-use tailorbird_solver::{points::Points, topology::Topology};
-
-use crate::{attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles};
+use tailorbird_cloth::{
+    attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles,
+    topology::Topology,
+};
+use tailorbird_solver::points::Points;
 
 /// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
 #[derive(Component, Clone, Debug, Default, Reflect)]

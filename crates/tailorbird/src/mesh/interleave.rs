@@ -3,8 +3,10 @@
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, f32x4, prelude::*};
 
-use super::lanes::{Factor, Reading, V3, Window, each_window, with_scratch};
-use crate::points::Points;
+use tailorbird_solver::{
+    kernels::lanes::{Factor, Reading, V3, Window, each_window, with_scratch},
+    points::Points,
+};
 
 /// An attribute of three numbers in interleaved vertices.
 #[derive(Debug)]

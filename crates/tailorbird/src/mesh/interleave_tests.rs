@@ -2,8 +2,9 @@
 
 use bevy_math::Vec3;
 
-use super::{interleave::*, lanes::levels};
-use crate::points::Points;
+use tailorbird_solver::{instruction_set::levels, points::Points};
+
+use super::interleave::*;
 
 #[test]
 fn vectors_come_to_their_vertices_whatever_the_instructions() {
