@@ -98,6 +98,7 @@ impl ClothDrawnHolds {
     }
 
     /// The offsets of all particles in storage order; none where all are drawn where they are.
+    #[cfg(feature = "render")]
     pub(crate) fn offsets(&self) -> Option<&Points> {
         (!self.is_still()).then_some(&self.offsets)
     }
