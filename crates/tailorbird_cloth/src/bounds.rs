@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
-use tailorbird_solver::kernels::range::range;
+use tailorbird_solver::bounds::Bounds;
 
 use crate::{
     cloth::Cloth,
@@ -51,18 +51,13 @@ impl ClothStagesItem<'_, '_> {
 impl ClothBounds {
     /// The box around all particles, now and a step ago; `None` where there are none.
     pub(crate) fn around(level: Level, particles: &ClothParticles) -> Option<Self> {
-        if particles.is_empty() {
-            return None;
-        }
-        let range = |values: &[f32], ends| range(level, values, ends);
-        let (now, before) = (&particles.position, &particles.step_position);
-        let empty = (f32::INFINITY, f32::NEG_INFINITY);
-        let x = range(&before.x, range(&now.x, empty));
-        let y = range(&before.y, range(&now.y, empty));
-        let z = range(&before.z, range(&now.z, empty));
-        Some(Self {
-            min: Vec3::new(x.0, y.0, z.0),
-            max: Vec3::new(x.1, y.1, z.1),
-        })
+        let Bounds { min, max } = Bounds::around(level, particles)?;
+        Some(Self { min, max })
+    }
+
+    /// The box as the solver has it.
+    pub(crate) fn bounds(self) -> Bounds {
+        let Self { min, max } = self;
+        Bounds { min, max }
     }
 }

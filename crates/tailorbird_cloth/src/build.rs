@@ -7,7 +7,7 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_solver::{points::Points, topology::Topology};
+use tailorbird_solver::{particles::Particles, points::Points, topology::Topology};
 use tracing::warn;
 
 use crate::{
@@ -103,8 +103,8 @@ impl ClothParticles {
         if count == 0 || count != new.particles() || !ratio.is_finite() {
             return false;
         }
-        let about = if self.pins.is_empty() && self.limited.is_empty() {
-            let at = |i: u32| self.position.get(i as usize);
+        let about = if self.0.input.pins.is_empty() && self.0.input.limited.is_empty() {
+            let at = |i: u32| self.0.state.position.get(i as usize);
             let held = || attached.particles().filter(|i| (*i as usize) < count);
             if held().next().is_some() {
                 held().map(at).sum::<Vec3>() / held().count() as f32
@@ -125,23 +125,32 @@ impl ClothParticles {
             from.map(|i| about + ratio * (points.get(i) - about))
                 .collect()
         };
-        let [position, previous, step] =
-            [&self.position, &self.previous_position, &self.step_position].map(grown);
+        let [position, previous, step] = [
+            &self.0.state.position,
+            &self.0.state.previous_position,
+            &self.0.state.step_position,
+        ]
+        .map(grown);
         if !same {
-            *self = Self {
-                substep_seconds: self.substep_seconds,
-                ..Self::at_rest(new)
-            };
+            let seconds = self.0.state.substep_seconds;
+            *self = Self::at_rest(new);
+            self.0.state.substep_seconds = seconds;
         }
-        (self.position, self.previous_position) = (position, previous);
-        self.step_position = step;
-        self.lost_displacement.fill(Vec3::ZERO);
-        self.grown_about = about;
-        for pin in self.pins.iter_mut().chain(&mut self.grabbed) {
+        (self.0.state.position, self.0.state.previous_position) = (position, previous);
+        self.0.state.step_position = step;
+        self.0.state.lost_displacement.fill(Vec3::ZERO);
+        self.0.state.grown_about = about;
+        for pin in self
+            .0
+            .input
+            .pins
+            .iter_mut()
+            .chain(&mut self.0.input.grabbed)
+        {
             pin.target *= ratio;
         }
-        self.calm.clear();
-        self.grant.rescale();
+        self.0.state.calm.clear();
+        self.0.state.grant.rescale();
         true
     }
 }
@@ -160,10 +169,11 @@ fn keep_shape(
     if !same_size || particles.len() != old.particles() {
         return None;
     }
-    let mut kept = ClothParticles::with_positions(resample(&particles.position, from, to));
-    kept.previous_position = resample(&particles.previous_position, from, to);
-    kept.substep_seconds = particles.substep_seconds;
-    Some(kept)
+    let before = &particles.0.state;
+    let mut kept = Particles::with_positions(resample(&before.position, from, to));
+    kept.state.previous_position = resample(&before.previous_position, from, to);
+    kept.state.substep_seconds = before.substep_seconds;
+    Some(ClothParticles(kept))
 }
 
 /// A grid of points with another resolution, bilinearly.

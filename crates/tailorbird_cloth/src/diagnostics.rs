@@ -53,9 +53,11 @@ impl ClothParticles {
             .filter(|([a, b], rest)| (a.max(b).to_owned() as usize) < self.len() && *rest > 0.0)
             .map(|([a, b], rest)| {
                 let length = self
+                    .0
+                    .state
                     .position
                     .get(a as usize)
-                    .distance(self.position.get(b as usize));
+                    .distance(self.0.state.position.get(b as usize));
                 (length / rest - 1.0).max(0.0)
             })
             .collect();
@@ -78,7 +80,8 @@ impl ClothParticles {
     pub fn kinetic_energy(&self) -> f64 {
         self.free()
             .map(|i| {
-                0.5 * f64::from(self.mass[i]) * f64::from(self.stored_velocity(i).length_squared())
+                0.5 * f64::from(self.0.input.mass[i])
+                    * f64::from(self.stored_velocity(i).length_squared())
             })
             .sum()
     }
@@ -86,14 +89,17 @@ impl ClothParticles {
     /// Potential energy \[J\] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
     pub fn potential_energy(&self, gravity: Vec3) -> f64 {
         self.free()
-            .map(|i| -f64::from(self.mass[i]) * f64::from(gravity.dot(self.position.get(i))))
+            .map(|i| {
+                -f64::from(self.0.input.mass[i])
+                    * f64::from(gravity.dot(self.0.state.position.get(i)))
+            })
             .sum()
     }
 
     /// Linear momentum [kg m/s] of all particles that are not pinned, in the axes of the frame.
     pub fn momentum(&self) -> Vec3 {
         self.free()
-            .map(|i| (self.stored_velocity(i) * self.mass[i]).as_dvec3())
+            .map(|i| (self.stored_velocity(i) * self.0.input.mass[i]).as_dvec3())
             .sum::<bevy_math::DVec3>()
             .as_vec3()
     }
@@ -103,16 +109,17 @@ impl ClothParticles {
         self.free()
             .map(|i| {
                 // Half way through the substep, where the velocity is that of the difference.
-                let place = 0.5 * (self.position.get(i) + self.previous_position.get(i));
+                let place =
+                    0.5 * (self.0.state.position.get(i) + self.0.state.previous_position.get(i));
                 place
                     .as_dvec3()
-                    .cross((self.stored_velocity(i) * self.mass[i]).as_dvec3())
+                    .cross((self.stored_velocity(i) * self.0.input.mass[i]).as_dvec3())
             })
             .sum::<bevy_math::DVec3>()
             .as_vec3()
     }
 
     fn free(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.len()).filter(|&i| self.inv_mass[i] > 0.0)
+        (0..self.len()).filter(|&i| self.0.input.inv_mass[i] > 0.0)
     }
 }

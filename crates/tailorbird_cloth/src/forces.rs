@@ -3,6 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::particles::{Input, Particles, State};
 
 use crate::{
     cloth::Cloth,
@@ -99,12 +100,12 @@ pub fn apply_forces(
         if particles.is_empty() {
             continue;
         }
-        particles.acceleration.clear();
+        particles.0.input.acceleration.clear();
         if forces.is_empty() {
             ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, None);
             continue;
         }
-        particles.effort.driven = f32::INFINITY;
+        particles.0.state.effort.driven = f32::INFINITY;
         let mut errors = Vec::new();
         let mut check = |field: &str, particle: u32, vector: Vec3, len: usize| {
             let error = ClothErrorKind::vector(field, vector).or_else(|| {
@@ -122,14 +123,15 @@ pub fn apply_forces(
         for &(particle, force) in &forces.forces {
             if check("ClothForces.force", particle, force, len) {
                 let i = particles.order.stored(particle) as usize;
-                let acceleration = frame.vector_to_frame(force) * particles.inv_mass[i];
-                particles.accelerations().add(i, acceleration);
+                let acceleration = frame.vector_to_frame(force) * particles.0.input.inv_mass[i];
+                particles.0.accelerations().add(i, acceleration);
             }
         }
         for &(particle, acceleration) in &forces.accelerations {
             if check("ClothForces.acceleration", particle, acceleration, len) {
                 let i = particles.order.stored(particle) as usize;
                 particles
+                    .0
                     .accelerations()
                     .add(i, frame.vector_to_frame(acceleration));
             }
@@ -165,13 +167,17 @@ impl ClothParticles {
         let distance_squared = |position: Vec3| position.distance_squared(point);
         let weight =
             |position: Vec3| (1.0 - distance_squared(position) / (radius * radius)).max(0.0);
-        self.accelerations();
-        let Self {
-            position,
-            acceleration,
-            inv_mass,
+        self.0.accelerations();
+        let Particles {
+            state: State { position, .. },
+            input:
+                Input {
+                    acceleration,
+                    inv_mass,
+                    ..
+                },
             ..
-        } = self;
+        } = &mut self.0;
         let free = || (0..inv_mass.len()).filter(|&i| inv_mass[i] > 0.0);
         let total: f32 = free().map(|i| weight(position.get(i))).sum();
         if radius > 0.0 && total > 0.0 {

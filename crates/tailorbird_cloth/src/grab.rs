@@ -5,12 +5,13 @@ use std::collections::VecDeque;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::particles::{Held, Pulled};
 
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     frame::ClothFrame,
-    particles::{ClothParticles, Held, Pulled},
+    particles::ClothParticles,
     topology::ClothTopology,
 };
 
@@ -37,7 +38,7 @@ struct Hand {
 
 impl ClothGrab {
     /// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
-    pub const MOST_STRETCH: f32 = 1.1;
+    pub const MOST_STRETCH: f32 = tailorbird_solver::hand::MOST_STRETCH;
 
     /// Takes a particle, and those within `radius` \[m\] along the sheet (its direct neighbours at least). `target` is
     /// where it is to be, in the world \[m\].
@@ -107,12 +108,12 @@ pub fn apply_grab(
     commands: ParallelCommands,
 ) {
     for (entity, mut grab, topology, frame, mut particles, mut status) in &mut cloths {
-        let before = particles.grabbed.map(|held| held.particle);
+        let before = particles.0.input.grabbed.map(|held| held.particle);
         let order = particles.order.clone();
         let error = match &mut grab.bypass_change_detection().held {
             None => {
-                particles.grabbed = None;
-                particles.pulled.clear();
+                particles.0.input.grabbed = None;
+                particles.0.input.pulled.clear();
                 None
             }
             Some(hand) if particles.is_empty() || !hand.target.is_finite() => {
@@ -133,28 +134,28 @@ pub fn apply_grab(
                 let patch = hand
                     .patch
                     .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
-                particles.pulled.clear();
-                particles.grabbed = None;
+                particles.0.input.pulled.clear();
+                particles.0.input.grabbed = None;
                 if !particles.is_held(hand.particle as usize) {
-                    particles.grabbed = Some(Held {
+                    particles.0.input.grabbed = Some(Held {
                         particle: order.stored(hand.particle),
                         // Where the frame will be when the hand is reached.
                         target: frame.to_frame_at_end(hand.target),
                     });
-                    particles
-                        .pulled
-                        .extend(patch.iter().map(|&(particle, weight, offset)| Pulled {
+                    particles.0.input.pulled.extend(patch.iter().map(
+                        |&(particle, weight, offset)| Pulled {
                             particle: order.stored(particle),
                             offset,
                             weight,
-                        }));
+                        },
+                    ));
                 }
                 None
             }
         };
         ClothStatus::update(&mut status, entity, &commands, ErrorSource::Grab, error);
-        if particles.grabbed.map(|held| held.particle) != before {
-            particles.update_inv_masses();
+        if particles.0.input.grabbed.map(|held| held.particle) != before {
+            particles.0.update_inv_masses();
         }
     }
 }
@@ -176,7 +177,7 @@ fn patch(
         .fold(0.0, f32::max);
     // Beyond the first ring, so that the weight there is not 0.
     let radius = radius.max(1.5 * ring);
-    let held_at = particles.position.get(center as usize);
+    let held_at = particles.0.state.position.get(center as usize);
     let mut seen = vec![center];
     let mut queue = VecDeque::from([center]);
     let mut patch = Vec::new();
@@ -186,43 +187,10 @@ fn patch(
             if weight > 0.0 && !seen.contains(&particle) {
                 seen.push(particle);
                 queue.push_back(particle);
-                let offset = particles.position.get(particle as usize) - held_at;
+                let offset = particles.0.state.position.get(particle as usize) - held_at;
                 patch.push((order.given(particle), weight, offset));
             }
         }
     }
     patch
-}
-
-impl ClothParticles {
-    /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
-    /// around it along. `left` substeps remain, this one included.
-    pub(crate) fn move_grabbed(&mut self, topology: &ClothTopology, left: u32, seconds: f32) {
-        let Some(held) = self.grabbed else {
-            return;
-        };
-        let i = held.particle as usize;
-        let from = self.position.get(i);
-        let mut hand = from + (held.target - from) / left as f32;
-        // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
-        for &neighbor in topology.neighbors(held.particle).iter().cycle().take(16) {
-            let rest =
-                topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
-            let anchor = self.position.get(neighbor as usize);
-            hand = anchor + (hand - anchor).clamp_length_max(ClothGrab::MOST_STRETCH * rest);
-        }
-        self.position.set(i, hand);
-        // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
-        for pulled in &self.pulled {
-            let i = pulled.particle as usize;
-            if self.inv_mass[i] == 0.0 {
-                continue;
-            }
-            let rate = 1.0 - (1.0 - pulled.weight).max(0.0).powf(60.0 * seconds);
-            let (from, free) = (self.previous_position.get(i), self.position.get(i));
-            let slowed = from.lerp(free, 1.0 - rate);
-            self.position
-                .set(i, slowed.lerp(hand + pulled.offset, rate));
-        }
-    }
 }

@@ -43,14 +43,11 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::frame::{Felt, shortest};
 
 use crate::{
-    cloth::Cloth,
-    error::ClothErrorKind,
-    frame::{ClothFrame, shortest},
-    particles::ClothParticles,
-    sleep::ClothRest,
-    topology::ClothTopology,
+    cloth::Cloth, error::ClothErrorKind, frame::ClothFrame, particles::ClothParticles,
+    sleep::ClothRest, topology::ClothTopology,
 };
 
 /// How much of its entity's motion a cloth feels, and what counts as a teleport. Change it at any time.
@@ -221,34 +218,6 @@ impl ClothInertia {
     }
 }
 
-/// How much of the motion of a step is felt.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Felt {
-    /// Of the way [-].
-    pub linear: f32,
-    /// Of the turn [-].
-    pub angular: f32,
-    /// The angular velocity, in world axes, whose centrifugal acceleration acts beside that [rad/s].
-    pub spin: Vec3,
-}
-
-impl Default for Felt {
-    fn default() -> Self {
-        Self {
-            linear: 1.0,
-            angular: 1.0,
-            spin: Vec3::ZERO,
-        }
-    }
-}
-
-impl Felt {
-    /// Whether it is the whole motion.
-    pub fn is_all(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// Puts cloths that were teleported with [`TeleportMode::Reset`] into their rest shape.
 pub fn reset_teleported(
     mut cloths: Query<
@@ -268,7 +237,7 @@ pub fn reset_teleported(
             continue;
         };
         if mode == TeleportMode::Reset {
-            particles.reset_to_rest(topology);
+            particles.0.reset_to_rest(topology);
             rest.wake();
         }
         commands.trigger(ClothTeleported { entity, mode });

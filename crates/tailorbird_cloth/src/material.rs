@@ -56,6 +56,7 @@
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::coefficients::Coefficients;
 
 use crate::error::ClothErrorKind;
 
@@ -263,6 +264,21 @@ impl ClothMaterial {
             ("rubber", Self::rubber()),
             ("lace", Self::lace()),
         ]
+    }
+
+    /// What the solver knows of it.
+    pub(crate) fn coefficients(&self) -> Coefficients {
+        Coefficients {
+            areal_density: self.areal_density,
+            warp_compliance: self.warp_compliance,
+            weft_compliance: self.weft_compliance,
+            shear_compliance: self.shear_compliance,
+            bend_compliance: self.bend_compliance,
+            viscosity: self.viscosity,
+            damping: self.damping,
+            friction: self.friction,
+            margin: self.margin(),
+        }
     }
 
     /// The distance to keep from colliders \[m\]: none where the thickness is invalid.

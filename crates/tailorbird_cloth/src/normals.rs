@@ -123,7 +123,7 @@ impl ClothStagesItem<'_, '_> {
     /// What [`recompute_normals`] does for one cloth.
     pub(crate) fn recompute_normals(&mut self, level: Level, crew: Crew) {
         let (topology, shading) = (self.topology, *self.shading);
-        let position = &self.particles.position;
+        let position = &self.particles.0.state.position;
         if position.is_empty() {
             return;
         }

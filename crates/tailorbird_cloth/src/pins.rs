@@ -5,13 +5,13 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::topology::Topology;
+use tailorbird_solver::{particles::Held, topology::Topology};
 
 use crate::{
     cloth::Cloth,
     error::{ClothErrorKind, ClothStatus, ErrorSource},
     material::ClothMaterial,
-    particles::{ClothParticles, Held},
+    particles::ClothParticles,
     topology::ClothTopology,
     weights::ClothWeights,
 };
@@ -350,9 +350,11 @@ pub fn apply_pins(
         particles.set_pins(&held);
         let errors = material.errors();
         if errors.is_empty() {
-            particles.set_masses(topology.areas(), material.areal_density);
+            particles
+                .0
+                .set_masses(topology.areas(), material.areal_density);
         } else {
-            particles.update_inv_masses();
+            particles.0.update_inv_masses();
         }
         ClothStatus::update(
             &mut status,
@@ -367,26 +369,27 @@ pub fn apply_pins(
 impl ClothParticles {
     /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
     fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
-        let mut held: Vec<Held> = pins
-            .iter()
-            .map(|&(particle, target)| Held {
-                particle: self.order.stored(particle),
-                target: target.unwrap_or_else(|| {
-                    let before = self
-                        .pins
-                        .binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
-                    before.map_or_else(
-                        |_| self.position(particle as usize),
-                        |at| self.pins[at].target,
-                    )
-                }),
-            })
-            .collect();
+        let mut held: Vec<Held> =
+            pins.iter()
+                .map(|&(particle, target)| Held {
+                    particle: self.order.stored(particle),
+                    target: target.unwrap_or_else(|| {
+                        let before =
+                            self.0.input.pins.binary_search_by_key(&particle, |pin| {
+                                self.order.given(pin.particle)
+                            });
+                        before.map_or_else(
+                            |_| self.position(particle as usize),
+                            |at| self.0.input.pins[at].target,
+                        )
+                    }),
+                })
+                .collect();
         // Stable, so that the last of several pins of a particle can be kept.
         held.sort_by_key(|pin| self.order.given(pin.particle));
         held.reverse();
         held.dedup_by_key(|pin| pin.particle);
         held.reverse();
-        self.pins = held;
+        self.0.input.pins = held;
     }
 }

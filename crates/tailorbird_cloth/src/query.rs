@@ -36,7 +36,7 @@ impl ClothParticles {
         }
         let mut nearest: Option<(usize, Vec3, f32)> = None;
         for (triangle, corners) in topology.triangles().iter().enumerate() {
-            let corners = corners.map(|i| self.position.get(i as usize));
+            let corners = corners.map(|i| self.0.state.position.get(i as usize));
             if let Some((barycentric, distance)) = meet(ray, corners)
                 && nearest.is_none_or(|(.., d)| distance < d)
             {
@@ -45,11 +45,11 @@ impl ClothParticles {
         }
         let (triangle, barycentric, distance) = nearest?;
         let corners = topology.triangles().get(triangle)?;
-        let [a, b, c] = corners.map(|i| self.position.get(i as usize));
+        let [a, b, c] = corners.map(|i| self.0.state.position.get(i as usize));
         let point = ray.get_point(distance);
         let normal = (b - a).cross(c - a).normalize_or(-*ray.direction);
         let particle = corners.into_iter().map(|i| i as usize).min_by(|&i, &j| {
-            let distance = |i| self.position.get(i).distance_squared(point);
+            let distance = |i| self.0.state.position.get(i).distance_squared(point);
             distance(i).total_cmp(&distance(j))
         })?;
         Some(ClothHit {
@@ -133,9 +133,9 @@ mod tests {
         let topology = Topology::build(&cloth.shape, Vec3::ONE).expect("valid");
         let mut particles = ClothParticles::at_rest(&topology);
         for i in 0..particles.len() {
-            let p = particles.position.get(i);
+            let p = particles.0.state.position.get(i);
             let wave = 0.1 * (7.0 * p.x).sin() * (5.0 * p.y).cos();
-            particles.position.set(i, p + Vec3::Z * wave);
+            particles.0.state.position.set(i, p + Vec3::Z * wave);
         }
         let bounds = ClothBounds {
             min: Vec3::splat(-0.6),

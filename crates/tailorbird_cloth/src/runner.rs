@@ -70,11 +70,12 @@ pub(crate) fn simulate_cloths(
 ) {
     let start = WallClock::start();
     let simulate = |cloth: &mut ClothStagesItem, crew: Crew| {
-        cloth.particles.begin_step();
+        cloth.particles.0.begin_step();
         wind.blow(&step, crew, cloth);
         let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
         for index in 0..count {
-            cloth.substep(&step.nth_of(index, count, crew), &colliders);
+            let substep = step.nth_of(index, count, crew);
+            cloth.solve(|cloth| cloth.substep(&substep, &colliders.list));
         }
         cloth.guard(&commands);
         cloth.settle(&step, &colliders);

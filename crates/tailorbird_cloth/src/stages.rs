@@ -1,15 +1,13 @@
 //! The stages of a step, for one cloth at a time.
 
 use bevy_ecs::{prelude::*, query::QueryData};
-use bevy_math::Vec3;
-use fearless_simd::Level;
-use tailorbird_solver::crew::Crew;
+use tailorbird_solver as solver;
 
 use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
-    collider::{ClothColliders, ClothLayers},
+    collider::ClothLayers,
     error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,
@@ -18,50 +16,11 @@ use crate::{
     particles::ClothParticles,
     reaction::ClothPinForces,
     sleep::{ClothRest, ClothSleep},
-    solver::{self, ClothSolver},
+    solver::ClothSolver,
     step::ClothStep,
     tethers::ClothTethers,
     topology::ClothTopology,
 };
-
-/// A substep of one cloth: what its stages are told.
-#[derive(Clone, Copy)]
-pub(crate) struct Substep<'a> {
-    /// The instruction set that the kernels use.
-    pub level: Level,
-    /// Its length \[s\].
-    pub seconds: f32,
-    /// Which it is, from 0.
-    pub index: u32,
-    /// How many there are.
-    pub count: u32,
-    /// Passes over the constraints.
-    pub iterations: u32,
-    /// Acceleration of every particle [m/s²], in world axes.
-    pub gravity: Vec3,
-    /// How fast what is inside a collider is pushed out of it [m/s].
-    pub overlap_speed: f32,
-    /// Who works on it.
-    pub crew: Crew<'a>,
-}
-
-impl Substep<'_> {
-    /// How far what is inside a collider is pushed out of it, each of the two times in a substep \[m\].
-    pub fn out(&self) -> f32 {
-        0.5 * self.overlap_speed * self.seconds
-    }
-
-    /// How many are left, this one included.
-    pub fn left(&self) -> u32 {
-        self.count - self.index
-    }
-
-    /// The parts of the step that have passed at its start and at its end, 0 to 1.
-    pub fn fractions(&self) -> (f32, f32) {
-        let to = (self.index + 1) as f32 / self.count as f32;
-        (to - 1.0 / self.count as f32, to)
-    }
-}
 
 /// What the stages need of a cloth. Opaque: the cloth's components are what to read.
 #[derive(QueryData)]
@@ -87,23 +46,21 @@ pub struct ClothStages {
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// All stages of a substep, in the order of [`ClothSubstep`](crate::schedule::ClothSubstep).
-    pub(crate) fn substep(&mut self, substep: &Substep, colliders: &ClothColliders) {
-        self.advance(substep);
-        solver::integrate(substep, self);
-        colliders.approach(substep, self);
-        solver::solve(substep, self);
-        colliders.collide_all(substep, self);
-        solver::calm(substep, self);
-    }
-    /// Moves the frame on by one substep, and with it what is held by others.
-    pub(crate) fn advance(&mut self, substep: &Substep) {
-        let particles = &mut *self.particles;
-        self.frame.advance(substep, particles);
-        if let Some(motion) = self.motion {
-            motion.advance(substep, particles);
-        }
-        self.attached.advance(substep, &self.frame, particles);
+    /// Calls `f` with the cloth as the solver has it.
+    pub(crate) fn solve<R>(&mut self, f: impl FnOnce(&mut solver::cloth::Cloth) -> R) -> R {
+        let coefficients = self.material.coefficients();
+        f(&mut solver::cloth::Cloth {
+            topology: self.topology,
+            coefficients: &coefficients,
+            method: self.solver.method(),
+            layers: self.layers.copied().unwrap_or_default().layers(),
+            tethers: &self.tethers.0,
+            holds: &mut self.attached.0,
+            limits: self.motion.map(|motion| &motion.limits),
+            forces: self.pin_forces.as_deref_mut().map(|forces| &mut forces.0),
+            frame: &mut self.frame.frame,
+            particles: &mut self.particles.0,
+        })
     }
 }
 

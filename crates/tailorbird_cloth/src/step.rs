@@ -5,12 +5,12 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_time::Time;
 use fearless_simd::Level;
-use tailorbird_solver::{crew::Crew, topology::Topology};
+use tailorbird_solver::{crew::Crew, substep::Substep, topology::Topology};
 use tracing::error;
 
 use crate::{
     cloth::Cloth, particles::ClothParticles, runner::OwnStages, settings::ClothSettings,
-    sleep::ClothRest, solver::ClothSolver, stages::Substep, topology::ClothTopology,
+    sleep::ClothRest, solver::ClothSolver, topology::ClothTopology,
 };
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
@@ -150,7 +150,7 @@ impl ClothStep {
             let stretched = 1.0 + more_substeps(solver, particles) * self.granted_substeps;
             let times = self.loaded(particles).max(stretched);
             let loaded = (unloaded as f32 * times).ceil() as u32;
-            let held = if particles.grabbed.is_some() {
+            let held = if particles.0.input.grabbed.is_some() {
                 loaded.max(solver.substeps_in_hand(topology))
             } else {
                 loaded
@@ -163,11 +163,11 @@ impl ClothStep {
     /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
     /// on it, and the waves of short length that tension drives become too fast for a substep.
     fn loaded(&self, particles: &ClothParticles) -> f32 {
-        let load = particles.around.bodies.load;
-        if load == 0.0 || !particles.inv_mass.contains(&0.0) {
+        let load = particles.0.scratch.around.bodies.load;
+        if load == 0.0 || !particles.0.input.inv_mass.contains(&0.0) {
             return 1.0;
         }
-        let mass: f32 = particles.mass.iter().sum();
+        let mass: f32 = particles.0.input.mass.iter().sum();
         let weight = mass * self.gravity.length().max(LEAST_GRAVITY);
         (1.0 + 1.5 * load / weight).min(MOST_LOADED)
     }
@@ -257,7 +257,7 @@ pub fn begin_step(
         particles += cloth.len();
         if !step.whole {
             // Also while paused: then both ends of the interpolation agree.
-            cloth.begin_step();
+            cloth.0.begin_step();
         }
     }
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
@@ -266,7 +266,7 @@ pub fn begin_step(
 /// How many more times as many substeps as at rest a cloth wants for a storm that stretches it [-]. The classic solver does not look.
 fn more_substeps(solver: ClothSolver, particles: &ClothParticles) -> f32 {
     match solver {
-        ClothSolver::Chains => particles.effort.more_substeps(),
+        ClothSolver::Chains => particles.0.state.effort.more_substeps(),
         ClothSolver::GaussSeidel => 0.0,
     }
 }

@@ -1,24 +1,10 @@
 //! Tethers from every particle to up to four pins, or other particles that are held.
 
-use std::sync::{Arc, OnceLock};
+use std::ops::Deref;
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use bevy_tasks::AsyncComputeTaskPool;
-use tailorbird_solver::{
-    kernels::{
-        lanes::Reading,
-        tether::{Straight, Tether},
-    },
-    memory::heap,
-    points::Points,
-    topology::{
-        Topology,
-        geodesic::{Geodesics, tether_anchors},
-        lattice::Lattice,
-    },
-};
+use tailorbird_solver::tethers::Tethers;
 
 use crate::{
     cloth::Cloth, particles::ClothParticles, solver::ClothSolver, step::ClothStep,
@@ -29,168 +15,18 @@ use crate::{
 /// [`build_tethers`] alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct ClothTethers {
-    #[reflect(ignore)]
-    fields: Fields,
-    #[reflect(ignore)]
-    pins: Vec<u32>,
-    revision: u64,
-    #[reflect(ignore)]
-    coming: Option<Coming>,
-    /// For how long what is beyond them comes back slowly, as some are new \[s\].
-    #[reflect(ignore)]
-    fresh: f32,
-}
+pub struct ClothTethers(#[reflect(ignore)] pub(crate) Tethers);
 
-/// Ways that are measured while the cloth goes on.
-#[derive(Clone, Debug)]
-struct Coming {
-    /// The step that begins with them.
-    due: u64,
-    anchors: Vec<u32>,
-    fields: Arc<OnceLock<Fields>>,
-}
+impl Deref for ClothTethers {
+    type Target = Tethers;
 
-/// How much longer still tethers are made where pins are further apart than the sheet between them is long, at most [-].
-const ROOM_BEYOND: f32 = 0.02;
-
-type Fields = [Option<Field>; ClothTethers::MOST];
-
-/// Ways from new pins are fresh for so long \[s\].
-const FRESH: f32 = 0.5;
-
-/// How many ways from pins to particles are measured within a step, at most.
-const WAYS_PER_STEP: usize = 4000;
-
-/// The ways from one pin.
-#[derive(Clone, Debug)]
-struct Field {
-    pin: u32,
-    ways: Ways,
-}
-
-#[derive(Clone, Debug)]
-enum Ways {
-    /// Along a sheet that is flat at rest.
-    Straight(Lattice, Straight),
-    /// One for each particle \[m\].
-    Lengths(Vec<f32>),
-}
-
-impl Ways {
-    /// How far it is to a particle \[m\].
-    fn length(&self, particle: u32) -> Option<f32> {
-        match self {
-            Self::Straight(lattice, straight) => {
-                let (column, row) = (particle % lattice.columns, particle / lattice.columns);
-                (row < lattice.rows).then(|| straight.length(column, row))
-            }
-            Self::Lengths(lengths) => lengths.get(particle as usize).copied(),
-        }
+    fn deref(&self) -> &Tethers {
+        &self.0
     }
 }
 
-/// All tethers of a cloth, for the kernels.
-pub(crate) enum Anchors<'a> {
-    /// Of a sheet that is flat at rest.
-    Straight([Option<Tether<Straight>>; ClothTethers::MOST]),
-    /// Of any other cloth.
-    Lengths([Option<Tether<Reading<'a>>>; ClothTethers::MOST]),
-}
-
-impl ClothTethers {
-    /// How many pins particles are tethered to. Of more pins those are chosen that lie furthest apart.
-    pub const MOST: usize = 4;
-
-    /// The pins that particles are tethered to.
-    pub fn pins(&self) -> impl Iterator<Item = u32> + '_ {
-        self.fields.iter().flatten().map(|field| field.pin)
-    }
-
-    /// How far a particle gets from each of [`Self::pins`] \[m\]; none where there is no such particle.
-    pub fn lengths(&self, particle: u32) -> impl Iterator<Item = f32> + '_ {
-        self.fields
-            .iter()
-            .flatten()
-            .filter_map(move |field| field.ways.length(particle))
-    }
-
-    /// Whether some of the pins are new: particles may be farther from them than they get.
-    pub(crate) fn is_fresh(&self) -> bool {
-        self.fresh > 0.0
-    }
-
-    /// What the ways take on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let fields = self.fields.iter().flatten();
-        let ways = fields.map(|field| match &field.ways {
-            Ways::Straight(..) => 0,
-            Ways::Lengths(lengths) => heap(lengths),
-        });
-        heap(&self.pins) + ways.sum::<usize>()
-    }
-
-    /// How much further a pin is from another than the sheet between them is long, at most [-]; 1 where none is.
-    fn longer(&self, field: &Field, position: &Points) -> f32 {
-        let at = position.get(field.pin as usize);
-        let others = self.fields.iter().flatten();
-        let far = others.filter_map(|other| {
-            let way = field.ways.length(other.pin).filter(|way| *way > 0.0)?;
-            Some(at.distance(position.get(other.pin as usize)) / way)
-        });
-        let most = far.fold(1.0, f32::max);
-        most * (1.0 + (most - 1.0).min(ROOM_BEYOND))
-    }
-
-    /// Where the pins are, and were at the start of the substep, and the ways from each.
-    pub(crate) fn anchors(&self, position: &Points, previous: &Points) -> Anchors<'_> {
-        let fields = self.fields.each_ref().map(Option::as_ref);
-        let at = |field: &Field| position.get(field.pin as usize);
-        let before = |field: &Field| previous.get(field.pin as usize);
-        if let Some(Some(Field {
-            ways: Ways::Straight(lattice, _),
-            ..
-        })) = fields.first()
-        {
-            let usable = (lattice.columns * lattice.rows) as usize == position.len();
-            return Anchors::Straight(fields.map(|field| match &field?.ways {
-                Ways::Straight(_, ways) if usable => Some(Tether {
-                    anchor: at(field?),
-                    anchor_before: before(field?),
-                    longer: self.longer(field?, position),
-                    ways: *ways,
-                }),
-                _ => None,
-            }));
-        }
-        Anchors::Lengths(fields.map(|field| match &field?.ways {
-            Ways::Lengths(lengths) if lengths.len() == position.len() => Some(Tether {
-                anchor: at(field?),
-                anchor_before: before(field?),
-                longer: self.longer(field?, position),
-                ways: Reading(lengths),
-            }),
-            _ => None,
-        }))
-    }
-
-    /// The point nearest to `p` that a particle gets to, its tethers being `slack` times as long as at rest \[m\].
-    pub(crate) fn reached(&self, particle: u32, p: Vec3, position: &Points, slack: f32) -> Vec3 {
-        self.fields.iter().flatten().fold(p, |p, field| {
-            let anchor = position.get(field.pin as usize);
-            let reach = field.ways.length(particle).map_or(f32::MAX, |l| l * slack);
-            anchor + (p - anchor).clamp_length_max(reach)
-        })
-    }
-}
-
-/// Measures the ways to the pins anew where the pins changed. Particles that are attached rigidly, or held at their targets, count
-/// as pins; those at springs do not.
-///
-/// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line. On other meshes it has to be
-/// found: that of a large one beside the steps, and used from a step on that depends on the size of the mesh alone. Until then its
-/// particles are tethered to those of the pins before that still hold. What is farther from a new pin than it gets comes back at a rate, not
-/// at once.
+/// Measures the ways to the pins anew where the pins changed: see [`Tethers::build`]. Particles that are attached rigidly, or held at their
+/// targets, count as pins; those at springs do not.
 pub fn build_tethers(
     step: Res<ClothStep>,
     mut cloths: Query<
@@ -205,91 +41,8 @@ pub fn build_tethers(
 ) {
     for (topology, solver, particles, mut tethers) in &mut cloths {
         let wanted = *solver == ClothSolver::Chains;
-        let pins = || particles.anchors().filter(|_| wanted);
-        let known = tethers.revision == topology.revision;
-        if tethers.is_fresh() {
-            tethers.fresh -= step.seconds();
-        }
-        if known && pins().eq(tethers.pins.iter().copied()) {
-            if tethers
-                .coming
-                .as_ref()
-                .is_some_and(|c| step.steps() >= c.due)
-                && let Some(coming) = tethers.coming.take()
-            {
-                let measured = coming.fields.get().cloned();
-                tethers.fields = measured.unwrap_or_else(|| fields(topology, &coming.anchors));
-                tethers.fresh = FRESH;
-            }
-            continue;
-        }
-        tethers.revision = topology.revision;
-        tethers.pins = pins().collect();
-        tethers.coming = None;
-        let mut pins = tethers.pins.clone();
-        // So that a sheet does the same however its particles were given.
-        pins.sort_unstable();
-        let rest = &topology.rest_positions;
-        let anchors = tether_anchors(&pins, rest, ClothTethers::MOST);
-        let ways = if is_straight(topology) {
-            0
-        } else {
-            anchors.len() * rest.len()
-        };
-        // A cloth that is made or changed shape is not moving yet.
-        if !known || ways < WAYS_PER_STEP {
-            tethers.fields = fields(topology, &anchors);
-            tethers.fresh = if known { FRESH } else { 0.0 };
-            continue;
-        }
-        for field in &mut tethers.fields {
-            field.take_if(|field| pins.binary_search(&field.pin).is_err());
-        }
-        let coming = Coming {
-            due: step.steps() + (ways / WAYS_PER_STEP) as u64,
-            anchors,
-            fields: Arc::default(),
-        };
-        // Without a pool they are measured when they are due.
-        if let Some(pool) = AsyncComputeTaskPool::try_get() {
-            let (topology, wanted) = (topology.0.clone(), coming.clone());
-            let measure = async move {
-                // Nobody waits for ways that changed again meanwhile.
-                if Arc::strong_count(&wanted.fields) > 1 {
-                    let fields = fields(&topology, &wanted.anchors);
-                    wanted.fields.get_or_init(|| fields);
-                }
-            };
-            pool.spawn(measure).detach();
-        }
-        tethers.coming = Some(coming);
+        let pins = particles.anchors().filter(move |_| wanted);
+        let when = (step.steps(), step.seconds());
+        tethers.0.build(&topology.0, pins, when);
     }
-}
-
-/// Whether ways along the sheet are straight lines.
-fn is_straight(topology: &Topology) -> bool {
-    topology.flat && topology.lattice.is_some()
-}
-
-/// The ways from these particles.
-fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
-    let ways = (!is_straight(topology) && !anchors.is_empty())
-        .then(|| Geodesics::new(&topology.rest_positions, &topology.triangles));
-    let mut anchors = anchors.iter().copied();
-    [(); ClothTethers::MOST].map(|()| {
-        let pin = anchors.next()?;
-        let ways = match (&topology.lattice, &ways) {
-            (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
-            (Some(lattice), None) => Ways::Straight(
-                *lattice,
-                Straight {
-                    column: pin % lattice.columns,
-                    row: pin / lattice.columns,
-                    spacing: lattice.spacing,
-                },
-            ),
-            (None, None) => return None,
-        };
-        Some(Field { pin, ways })
-    })
 }

@@ -45,9 +45,9 @@ impl ClothStagesItem<'_, '_> {
     /// What [`guard_finite`] does for one cloth.
     pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
         let particles = &*self.particles;
-        let strained = particles.effort.unmet();
+        let strained = particles.0.state.effort.unmet();
         let entity = self.entity;
-        let stretched = particles.effort.stretched();
+        let stretched = particles.0.state.effort.stretched();
         let known = [self.status.strained(), self.status.stretched()];
         // It changes in each step, and counts as changed when it begins and ends.
         if known.map(|part| part > 0.0) != [strained, stretched].map(|part| part > 0.0) {
@@ -61,7 +61,10 @@ impl ClothStagesItem<'_, '_> {
                 "{entity}: {percent:.0} % of the edges are longer than the fabric lets them be: holds or colliders ask for more"
             );
         }
-        let all = [&particles.position, &particles.previous_position];
+        let all = [
+            &particles.0.state.position,
+            &particles.0.state.previous_position,
+        ];
         if all
             .into_iter()
             .all(|points| are_finite(Level::new(), points))
@@ -72,7 +75,7 @@ impl ClothStagesItem<'_, '_> {
             .positions()
             .position(|p| !p.is_finite())
             .unwrap_or_default();
-        self.particles.reset_to_step_start();
+        self.particles.0.reset_to_step_start();
         let (entity, status) = (self.entity, &mut self.status);
         let error = ClothErrorKind::NonFiniteState { particle };
         if status.is_ok_for(ErrorSource::State) {

@@ -4,9 +4,10 @@
 //! than the fabric lets them be, its lines give way (`solver/give.rs`), and what moves by their pull moves slowly, as seen from what holds
 //! it, so that stretch comes back without becoming speed (`slowing.rs`).
 
-use crate::kernels::contact::Contacts;
 use bevy_math::Isometry3d;
 use bevy_reflect::prelude::*;
+
+use crate::kernels::contact::Contacts;
 
 /// How it stands with what a cloth is asked for, as was seen at the end of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]

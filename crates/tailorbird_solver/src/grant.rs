@@ -8,6 +8,8 @@
 
 mod trial;
 
+use trial::Trial;
+
 use crate::{
     effort::Effort,
     kernels::{lanes::Shared, lattice::Lengths},
@@ -19,7 +21,6 @@ use crate::{
         lattice::Lattice,
     },
 };
-use trial::Trial;
 
 /// The rate at which what is granted grows towards what is asked for [1/s].
 const GROWTH: f32 = 40.0;

@@ -11,20 +11,48 @@
 //! Units are metres, kilograms and seconds.
 
 #[doc(hidden)]
+pub mod bounds;
+#[doc(hidden)]
+pub mod cloth;
+#[doc(hidden)]
+pub mod coefficients;
+#[doc(hidden)]
+pub mod contact;
+#[doc(hidden)]
 pub mod crew;
 #[doc(hidden)]
 pub mod effort;
 pub mod error;
+pub mod frame;
 #[doc(hidden)]
 pub mod grant;
+#[doc(hidden)]
+pub mod hand;
+#[doc(hidden)]
+pub mod holds;
 pub mod instruction_set;
 #[doc(hidden)]
 pub mod kernels;
 #[doc(hidden)]
+pub mod limits;
+#[doc(hidden)]
 pub mod memory;
 pub mod numbers;
+pub mod particles;
 pub mod points;
+#[doc(hidden)]
+pub mod pose;
+#[doc(hidden)]
+pub mod reaction;
 pub mod shape;
+#[doc(hidden)]
+pub mod solve;
+#[doc(hidden)]
+pub mod stillness;
+#[doc(hidden)]
+pub mod substep;
+#[doc(hidden)]
+pub mod tethers;
 pub mod topology;
 pub mod wall_clock;
 pub mod wind;

@@ -2,7 +2,6 @@
 
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, f32x4, prelude::*};
-
 use tailorbird_solver::{
     kernels::lanes::{Factor, Reading, V3, Window, each_window, with_scratch},
     points::Points,

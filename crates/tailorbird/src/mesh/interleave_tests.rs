@@ -1,7 +1,6 @@
 //! Vertices hold what they are to hold, whatever the instructions.
 
 use bevy_math::Vec3;
-
 use tailorbird_solver::{instruction_set::levels, points::Points};
 
 use super::interleave::*;

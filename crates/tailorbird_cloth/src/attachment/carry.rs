@@ -1,12 +1,13 @@
 //! What holds a cloth carries it along where that is not felt.
 
 use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
-
-use super::{
-    AttachedParticles,
-    held::{Body, STANDS},
+use tailorbird_solver::{
+    holds::{Holder, STANDS},
+    particles::{Particles, State},
     pose::{Pose, motion},
 };
+
+use super::AttachedParticles;
 use crate::{frame::ClothFrame, particles::ClothParticles};
 
 /// The motion of a body, as seen from the frame at the start of the step. With the cloth's entity it may have been put elsewhere already.
@@ -37,8 +38,9 @@ impl AttachedParticles {
     }
 
     /// The body that leads a cloth which nothing else holds.
-    fn leader(&self, particles: &ClothParticles) -> Option<&Body> {
-        let held_elsewhere = !particles.pins.is_empty() || !particles.limited.is_empty();
+    fn leader(&self, particles: &ClothParticles) -> Option<&Holder> {
+        let held_elsewhere =
+            !particles.0.input.pins.is_empty() || !particles.0.input.limited.is_empty();
         self.bodies.first().filter(|_| !held_elsewhere)
     }
 
@@ -49,13 +51,13 @@ impl AttachedParticles {
 
     /// Lets what holds the cloth carry it along by what of its way is too sudden, where that is so of all.
     pub(super) fn soften(&mut self, particles: &ClothParticles) {
-        let sudden = |body: &Body| body.excess != Vec3::ZERO;
+        let sudden = |body: &Holder| body.excess != Vec3::ZERO;
         if self.leader(particles).is_none() || !self.bodies.iter().all(sudden) {
             return;
         }
         let count = self.bodies.len() as f32;
         let way = self.bodies.iter().map(|body| body.excess).sum::<Vec3>() / count;
-        for body in &mut self.bodies {
+        for body in &mut self.0.bodies {
             let place = body.start.place();
             body.jumped.get_or_insert(body.start);
             let from = Isometry3d::new(place.translation + Vec3A::from(way), place.rotation);
@@ -76,13 +78,17 @@ impl AttachedParticles {
         if way.max(turn) < STANDS {
             return None;
         }
-        let ClothParticles {
-            position,
-            previous_position,
-            step_position,
-            lost_displacement,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    step_position,
+                    lost_displacement,
+                    ..
+                },
             ..
-        } = particles;
+        } = &mut particles.0;
         for points in [position, previous_position, step_position] {
             for i in 0..points.len() {
                 points.set(i, motion * points.get(i));

@@ -4,11 +4,11 @@ use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
-use tailorbird_solver::topology::Topology;
+use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
 
 use super::{
     AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
-    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, held::Body, pose::Pose,
+    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, pose::pose_of,
 };
 use crate::{
     cloth::Cloth,
@@ -104,7 +104,7 @@ pub fn prepare_attachments(
         }
         let (mut changed, mut teleported) = (false, false);
         let bodies_before = attached.bodies.len();
-        attached.clear();
+        attached.0.clear();
         for attachment in list.into_iter().flat_map(RelationshipTarget::iter) {
             let Ok((entity, data, to, carried, mut state, mut status)) =
                 attachments.get_mut(attachment)
@@ -140,7 +140,7 @@ pub fn prepare_attachments(
             teleported |= teleport;
             let pose = |end: fn(SampledPose) -> GlobalTransform| {
                 let place = sampled.clone().map(end)?;
-                Pose::of(&place)
+                pose_of(&place)
             };
             let (started, pose) = (pose(|s| s.start), pose(|s| s.end));
             let known = state.target == Some(target) && state.revision == topology.revision;
@@ -191,9 +191,9 @@ pub fn prepare_attachments(
             } else {
                 excess(state.velocity, way, step.world_seconds()).0
             };
-            let body = Body {
-                attachment,
-                target,
+            let body = Holder {
+                attachment: attachment.to_bits(),
+                target: target.to_bits(),
                 start,
                 end,
                 jumped,
@@ -202,7 +202,9 @@ pub fn prepare_attachments(
                 pulled: Vec3::ZERO,
                 substeps: 0,
             };
-            attached.add(body, &state.points, state.compliances.as_deref());
+            attached
+                .0
+                .add(body, &state.points, state.compliances.as_deref());
         }
         changed |= attached.bodies.len() != bodies_before;
         let mut moved = false;
@@ -211,7 +213,8 @@ pub fn prepare_attachments(
             for body in &attached.bodies {
                 if step.running()
                     && !body.told
-                    && let Ok((.., mut state, _)) = attachments.get_mut(body.attachment)
+                    && let Ok((.., mut state, _)) =
+                        attachments.get_mut(Entity::from_bits(body.attachment))
                 {
                     let way = body.start.way_to(&body.end);
                     state.velocity = way / step.world_seconds();
@@ -226,14 +229,17 @@ pub fn prepare_attachments(
                 commands.command_scope(|mut commands| commands.trigger(teleported));
             }
         }
-        changed |= attached.finish(frame, &mut particles, step.world_seconds());
-        attached.disturbed |= changed || moved;
-        attached.revision += u64::from(changed);
+        changed |= attached
+            .0
+            .finish(frame, &mut particles.0, step.world_seconds());
+        attached.0.disturbed |= changed || moved;
+        attached.0.revision += u64::from(changed);
         // One that sleeps remembers where things were when it fell asleep, however slowly they creep away.
         let awake = !rest.is_asleep() || attached.disturbed;
         for body in &attached.bodies {
             if (awake || body.jumped.is_some())
-                && let Ok((.., mut state, _)) = attachments.get_mut(body.attachment)
+                && let Ok((.., mut state, _)) =
+                    attachments.get_mut(Entity::from_bits(body.attachment))
             {
                 state.pose = Some(body.end);
             }
@@ -282,7 +288,7 @@ impl AttachmentState {
         let map_before = started.seen_from(frame.start);
         let kept_point = |point: Vec3| {
             growth.map_or(point, |ratio| {
-                let about = particles.grown_about;
+                let about = particles.0.state.grown_about;
                 map_before.undo(about + ratio * (map_before.apply(point) - about))
             })
         };
@@ -293,7 +299,7 @@ impl AttachmentState {
                 let mut before = before.iter().filter(|_| stay);
                 let kept = before.find(|(particle, _)| *particle == i);
                 Some(kept.map_or_else(
-                    || map.undo(particles.position.get(i as usize)),
+                    || map.undo(particles.0.state.position.get(i as usize)),
                     |&(_, point)| kept_point(point),
                 ))
             }
@@ -323,7 +329,10 @@ impl AttachmentState {
                 .collect();
         }
         let compliance = data.give();
-        let masses = self.points.iter().map(|&(i, _)| particles.mass[i as usize]);
+        let masses = self
+            .points
+            .iter()
+            .map(|&(i, _)| particles.0.input.mass[i as usize]);
         let mass: f32 = masses.clone().sum();
         let count = self.points.len() as f32;
         self.compliances = (compliance > 0.0).then(|| {
@@ -353,8 +362,9 @@ pub fn break_attachments(
         if rest.is_asleep() {
             continue;
         }
-        for body in &mut attached.bypass_change_detection().bodies {
-            let Ok((state, mut carried)) = attachments.get_mut(body.attachment) else {
+        for body in &mut attached.bypass_change_detection().0.bodies {
+            let Ok((state, mut carried)) = attachments.get_mut(Entity::from_bits(body.attachment))
+            else {
                 continue;
             };
             let force = body.pulled / body.substeps.max(1) as f32;
@@ -364,8 +374,8 @@ pub fn break_attachments(
             if most.is_some_and(|most| force.length() > most) {
                 let broken = AttachmentBroken {
                     entity: cloth,
-                    attachment: body.attachment,
-                    target: body.target,
+                    attachment: Entity::from_bits(body.attachment),
+                    target: Entity::from_bits(body.target),
                     force,
                     reason: BreakReason::Force,
                 };

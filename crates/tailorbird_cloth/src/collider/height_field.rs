@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bevy_math::{UVec2, Vec2};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::contact::solid::Field;
 
 use crate::error::ClothErrorKind;
 
@@ -77,13 +78,13 @@ impl HeightField {
         self.size
     }
 
-    /// The lowest and the highest of the heights \[m\].
-    pub(super) fn range(&self) -> (f32, f32) {
-        self.range
-    }
-
-    /// The same for all clones.
-    pub(super) fn id(&self) -> usize {
-        Arc::as_ptr(&self.heights) as *const f32 as usize
+    /// What the solver knows of it.
+    pub(super) fn data(&self) -> Field {
+        Field {
+            heights: self.heights.clone(),
+            resolution: self.resolution,
+            size: self.size,
+            range: self.range,
+        }
     }
 }

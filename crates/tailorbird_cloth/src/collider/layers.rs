@@ -2,6 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::contact::Layers;
 
 /// Which colliders a cloth meets, and which cloths a collider: two interact where each one's memberships share a bit with
 /// the other's filters. Optional on both; whatever has none meets everything that wants to meet it.
@@ -47,5 +48,13 @@ impl ClothLayers {
     /// Whether the two meet.
     pub const fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
+    }
+
+    /// The layers as the solver has them.
+    pub(crate) const fn layers(self) -> Layers {
+        Layers {
+            memberships: self.memberships,
+            filters: self.filters,
+        }
     }
 }

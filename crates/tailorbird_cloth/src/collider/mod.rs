@@ -52,8 +52,6 @@
 //! A [`ClothCollider`] is moved by its `Transform` alone. Bodies of a physics engine are pushed to [`ExternalColliders`] in each step, and
 //! get back what cloth did to them from [`ClothReactions`].
 
-mod bodies;
-mod coupling;
 #[cfg(feature = "serialize")]
 mod description;
 mod external;
@@ -61,15 +59,11 @@ mod height_field;
 mod hull;
 mod layers;
 mod mesh;
-mod narrow;
-pub(crate) mod near;
 mod reactions;
 mod shape;
-mod sight;
 mod snapshot;
-mod solid;
+mod solids;
 mod stages;
-mod surface;
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec2, Vec3};

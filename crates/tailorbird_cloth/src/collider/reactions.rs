@@ -60,7 +60,7 @@ pub fn gather_reactions(
     list.clear();
     order.clear();
     for (entity, mut particles) in &mut cloths {
-        let bodies = &mut particles.bypass_change_detection().around.bodies;
+        let bodies = &mut particles.bypass_change_detection().0.scratch.around.bodies;
         if bodies.touched() {
             order.push(entity);
         }
@@ -73,7 +73,7 @@ pub fn gather_reactions(
         let Ok((_, mut particles)) = cloths.get_mut(*entity) else {
             continue;
         };
-        let bodies = &mut particles.bypass_change_detection().around.bodies;
+        let bodies = &mut particles.bypass_change_detection().0.scratch.around.bodies;
         for (body, proxy) in colliders.bodies.iter().zip(&bodies.list) {
             if !proxy.touched {
                 continue;

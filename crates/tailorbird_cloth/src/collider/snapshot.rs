@@ -3,11 +3,11 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::contact::{Body, ColliderId, Colliders, MovingCollider};
 
 use super::{
     ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,
-    check,
-    solid::{Solid, Solids, swept},
+    check, solids::Solids,
 };
 use crate::{
     error::{ClothErrorKind, ClothStatus, ErrorSource},
@@ -41,28 +41,11 @@ impl ColliderPose {
 /// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ClothColliders {
-    pub(super) colliders: Vec<MovingCollider>,
-    /// The boxes around them during the step, in the world \[m\].
-    pub(super) boxes: Vec<(Vec3, Vec3)>,
+    /// As the solver has them.
+    pub(crate) list: Colliders,
     /// The bodies that cloth pushes, in the order of entities.
     pub(super) bodies: Vec<ColliderBody>,
     solids: Solids,
-}
-
-/// A simple solid during a step.
-#[derive(Clone, Debug)]
-pub(super) struct MovingCollider {
-    pub entity: Entity,
-    /// Which of the entity's colliders, and which part of a compound.
-    pub part: (u32, u32),
-    pub solid: Solid,
-    pub friction: f32,
-    pub margin: f32,
-    pub layers: ClothLayers,
-    pub start: Isometry3d,
-    pub end: Isometry3d,
-    /// Which of the bodies it belongs to.
-    pub body: Option<usize>,
 }
 
 /// What all parts of a collider have in common.
@@ -83,12 +66,12 @@ struct Whole<'a> {
 impl ClothColliders {
     /// The number of colliders; each part of a compound counts.
     pub fn len(&self) -> usize {
-        self.colliders.len()
+        self.list.colliders.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.colliders.is_empty()
+        self.list.colliders.is_empty()
     }
 
     fn add(&mut self, whole: &Whole) {
@@ -108,13 +91,15 @@ impl ClothColliders {
         let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
             return;
         };
-        self.colliders.push(MovingCollider {
-            entity: whole.entity,
-            part: (whole.part, part),
+        self.list.colliders.push(MovingCollider {
+            id: ColliderId {
+                owner: whole.entity.to_bits(),
+                part: (whole.part, part),
+            },
             solid,
             friction: whole.friction,
             margin: whole.margin,
-            layers: whole.layers,
+            layers: whole.layers.layers(),
             start: whole.start * at,
             end: whole.end * at,
             body: whole.body,
@@ -168,8 +153,9 @@ pub fn snapshot_colliders(
     commands: ParallelCommands,
 ) {
     let list = &mut *list;
-    list.colliders.clear();
-    list.boxes.clear();
+    list.list.colliders.clear();
+    list.list.boxes.clear();
+    list.list.bodies.clear();
     list.bodies.clear();
     for (entity, collider, layers, mut pose, mut status) in &mut colliders {
         let errors = collider.errors();
@@ -214,13 +200,17 @@ pub fn snapshot_colliders(
     }
     take_external(list, &mut external, step.steps(), &mut others, &commands);
     // The order in which they are solved must not depend on how entities are stored.
-    list.colliders
-        .sort_unstable_by_key(|collider| (collider.entity, collider.part));
+    list.list
+        .colliders
+        .sort_unstable_by_key(|collider| collider.id);
     list.solids.forget(step.steps());
-    let ClothColliders {
-        colliders, boxes, ..
-    } = list;
-    boxes.extend(colliders.iter().map(MovingCollider::around));
+    let ClothColliders { list, bodies, .. } = list;
+    (list.boxes).extend(list.colliders.iter().map(MovingCollider::around));
+    list.bodies.extend(bodies.iter().map(|body| Body {
+        inv_mass: body.inv_mass,
+        inv_inertia: body.inv_inertia,
+        center_of_mass: body.center_of_mass,
+    }));
 }
 
 fn take_external(
@@ -320,31 +310,6 @@ fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
         .into_iter()
         .filter_map(|(field, value)| ClothErrorKind::vector(field, value));
     mass.into_iter().chain(inertia).chain(vectors)
-}
-
-impl MovingCollider {
-    /// What tells it from others, from step to step.
-    pub fn name(&self) -> (Entity, (u32, u32)) {
-        (self.entity, self.part)
-    }
-
-    /// Where it is at a part of the step, in the world.
-    pub fn at(&self, fraction: f32) -> Isometry3d {
-        Isometry3d::new(
-            self.start.translation.lerp(self.end.translation, fraction),
-            self.start.rotation.slerp(self.end.rotation, fraction),
-        )
-    }
-
-    /// The box around it during the step, margin included, in the world \[m\].
-    fn around(&self) -> (Vec3, Vec3) {
-        const EVERYWHERE: (Vec3, Vec3) = (Vec3::MIN, Vec3::MAX);
-        let margin = Vec3::splat(self.margin);
-        self.solid.range().map_or(EVERYWHERE, |range| {
-            let (low, high) = swept(range, &self.start, &self.end);
-            (low - margin, high + margin)
-        })
-    }
 }
 
 #[cfg(test)]

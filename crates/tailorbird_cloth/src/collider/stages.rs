@@ -1,16 +1,12 @@
 //! The stages that keep particles out of colliders.
 
-use std::mem;
-
 use bevy_ecs::prelude::*;
-use tailorbird_solver::kernels::contact::Phase;
+use tailorbird_solver::{contact::solid::Kind, kernels::contact::Phase};
 
-use super::{ClothColliders, snapshot::MovingCollider, solid::Kind};
+use super::ClothColliders;
 use crate::{
     cloth::Cloth,
-    particles::ClothParticles,
-    solver::ClothSolver,
-    stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
+    stages::{ClothStages, for_each_awake},
     step::ClothStep,
 };
 
@@ -25,7 +21,7 @@ pub fn find_contacts(
 ) {
     let substep = step.in_progress();
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        colliders.approach(&substep, &mut cloth);
+        cloth.solve(|cloth| colliders.list.approach(&substep, cloth));
     });
 }
 
@@ -40,7 +36,9 @@ macro_rules! collide_systems {
             ) {
                 let substep = step.in_progress();
                 for_each_awake(&step, &mut cloths, &|mut cloth| {
-                    colliders.collide(Phase::Final, Some(Kind::$kind), &substep, &mut cloth);
+                    cloth.solve(|cloth| {
+                        (colliders.list).collide(Phase::Final, Some(Kind::$kind), &substep, cloth);
+                    });
                 });
             }
         )*
@@ -58,88 +56,4 @@ collide_systems! {
     collide_cuboid: Cuboid,
     /// Keeps particles out of cylinders, convex hulls, triangle meshes and terrain.
     collide_shape: Other,
-}
-
-impl ClothColliders {
-    /// What [`find_contacts`] does for one cloth.
-    pub(crate) fn approach(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
-        let particles = &mut *cloth.particles;
-        let bodies = &mut particles.around.bodies;
-        bodies.advance(&self.bodies, substep);
-        if *cloth.solver != ClothSolver::Chains || self.is_empty() {
-            particles.contacts.clear();
-            particles.around.couplings.clear();
-            return;
-        }
-        let len = particles.len();
-        particles.contacts.reset(len);
-        self.collide(Phase::Approach, None, substep, cloth);
-        let mut around = mem::take(&mut cloth.particles.around);
-        self.share_out(substep, cloth, &mut around);
-        cloth.particles.around = around;
-    }
-
-    /// What the systems after the constraints do for one cloth, one after the other.
-    pub(crate) fn collide_all(&self, substep: &Substep, cloth: &mut ClothStagesItem) {
-        for kind in [
-            Kind::Sphere,
-            Kind::HalfSpace,
-            Kind::Capsule,
-            Kind::Cuboid,
-            Kind::Other,
-        ] {
-            self.collide(Phase::Final, Some(kind), substep, cloth);
-        }
-    }
-
-    /// Keeps the particles of one cloth out of all colliders, or out of those of one kind.
-    pub(crate) fn collide(
-        &self,
-        phase: Phase,
-        kind: Option<Kind>,
-        substep: &Substep,
-        cloth: &mut ClothStagesItem,
-    ) {
-        let meant =
-            |collider: &MovingCollider| kind.is_none_or(|kind| collider.solid.kind() == kind);
-        let contacts = &mut cloth.particles.contacts;
-        let loaded = phase == Phase::Final && !contacts.pressed.is_empty();
-        if !loaded && !self.colliders.iter().any(meant) {
-            return;
-        }
-        let mut around = mem::take(&mut cloth.particles.around);
-        if loaded {
-            self.hand_over(substep, cloth, &mut around);
-        }
-        let layers = cloth.layers.copied().unwrap_or_default();
-        let ClothParticles {
-            position,
-            previous_position,
-            ..
-        } = &*cloth.particles;
-        let points = [position, previous_position];
-        let stage = (substep.index, phase == Phase::Final);
-        let margin = cloth.material.margin();
-        let stage = (substep.level, stage);
-        around.look(self, &cloth.frame, layers, margin, stage, points);
-        for k in 0..around.near.len() {
-            let Some(collider) = self.colliders.get(around.near[k]) else {
-                continue;
-            };
-            if !meant(collider) {
-                continue;
-            }
-            if let Some(body) = collider.body {
-                self.strike((collider, body), phase, substep, cloth, &mut around);
-            } else {
-                collider.collide(phase, substep, cloth, &mut around);
-            }
-        }
-        cloth.particles.around = around;
-    }
-}
-
-/// Two surfaces rub with the geometric mean of their frictions: if either is slippery, so is the pair.
-pub(super) fn combined_friction(a: f32, b: f32) -> f32 {
-    (a * b).max(0.0).sqrt()
 }

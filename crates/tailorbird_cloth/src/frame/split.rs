@@ -5,15 +5,6 @@ use bevy_transform::components::GlobalTransform;
 
 use crate::error::ClothErrorKind;
 
-/// The same rotation by no more than π.
-pub(crate) fn shortest(rotation: Quat) -> Quat {
-    if rotation.w < 0.0 {
-        -rotation
-    } else {
-        rotation
-    }
-}
-
 /// A world transform as rigid frame and scale, or what is wrong with it.
 pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
     let (scale, rotation, translation) = transform.to_scale_rotation_translation();

@@ -5,11 +5,8 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
-    kernels::{
-        lanes::{Shared, SharedPoints},
-        limit::{self, Backstop, Limits},
-        normals,
-    },
+    kernels::{lanes::SharedPoints, normals},
+    limits::MotionLimits,
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -27,7 +24,6 @@ use crate::{
     sampling::{FrameClock, HopDetector},
     settings::ClothSettings,
     sleep::ClothRest,
-    stages::Substep,
     step::ClothStep,
     topology::ClothTopology,
 };
@@ -36,19 +32,9 @@ use crate::{
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct MotionState {
-    /// Furthest from the target \[m\]; empty where nothing is constrained.
+    /// How far particles may get from their targets.
     #[reflect(ignore)]
-    max_distance: Numbers,
-    /// Empty where there is no backstop \[m\].
-    #[reflect(ignore)]
-    backstop_distance: Numbers,
-    #[reflect(ignore)]
-    backstop_radius: Numbers,
-    /// At the start and at the end of the step, in the cloth's frame \[m\].
-    #[reflect(ignore)]
-    pub(super) targets: [Points; 2],
-    #[reflect(ignore)]
-    normals: [Points; 2],
+    pub(crate) limits: MotionLimits,
     /// Particles whose largest distance is 0.
     #[reflect(ignore)]
     held: Vec<u32>,
@@ -110,7 +96,7 @@ pub fn prepare_motion(
         let rebuilt = motion.revision != topology.revision;
         motion.disturbed = false;
         let Some(constraints) = constraints else {
-            motion.disturbed = !motion.max_distance.is_empty();
+            motion.disturbed = !motion.limits.max_distance.is_empty();
             *motion.bypass_change_detection() = MotionState {
                 disturbed: motion.disturbed,
                 ..MotionState::default()
@@ -127,7 +113,7 @@ pub fn prepare_motion(
                 motion.read(&constraints, topology);
             } else if rebuilt {
                 // Those of another shape mean nothing to this one.
-                motion.max_distance.clear();
+                motion.limits.max_distance.clear();
                 motion.held.clear();
             }
             motion.disturbed = true;
@@ -190,7 +176,7 @@ pub fn prepare_motion(
         let order = particles.order.clone();
         let unpinned = |&i: &u32| !particles.is_pinned(order.given(i) as usize);
         let wanted = held.iter().copied().filter(unpinned);
-        if !wanted.clone().eq(particles.limited.iter().copied()) {
+        if !wanted.clone().eq(particles.0.input.limited.iter().copied()) {
             let wanted: Vec<u32> = wanted.collect();
             particles.limit(wanted.into_iter());
             motion.disturbed = true;
@@ -201,11 +187,11 @@ pub fn prepare_motion(
 impl ClothParticles {
     /// Replaces the particles that motion constraints hold at their targets.
     fn limit(&mut self, held: impl Iterator<Item = u32>) {
-        let any = !self.limited.is_empty();
-        self.limited.clear();
-        self.limited.extend(held);
-        if any || !self.limited.is_empty() {
-            self.update_inv_masses();
+        let any = !self.0.input.limited.is_empty();
+        self.0.input.limited.clear();
+        self.0.input.limited.extend(held);
+        if any || !self.0.input.limited.is_empty() {
+            self.0.update_inv_masses();
         }
     }
 }
@@ -213,15 +199,7 @@ impl ClothParticles {
 impl MotionState {
     /// What it takes on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        let points = self.targets.iter().chain(&self.normals);
-        let numbers = [
-            &self.max_distance,
-            &self.backstop_distance,
-            &self.backstop_radius,
-        ];
-        points.map(Points::memory_bytes).sum::<usize>()
-            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
-            + heap(&self.held)
+        self.limits.memory_bytes() + heap(&self.held)
     }
 
     /// Whether the targets move on, however slowly.
@@ -238,7 +216,7 @@ impl MotionState {
     /// # Panics
     /// When `i` is out of range.
     pub fn target(&self, i: usize) -> Vec3 {
-        self.targets[1].get(i)
+        self.limits.targets[1].get(i)
     }
 
     /// Reads valid constraints.
@@ -248,13 +226,18 @@ impl MotionState {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };
-        self.max_distance = stored(&constraints.max_distance, f32::INFINITY);
-        self.backstop_distance = stored(&constraints.backstop_distance, f32::INFINITY);
-        self.backstop_radius = stored(&constraints.backstop_radius, 1.0);
-        if self.backstop_distance.iter().all(|d| d.is_infinite()) {
-            (self.backstop_distance, self.backstop_radius) = Default::default();
+        self.limits.max_distance = stored(&constraints.max_distance, f32::INFINITY);
+        self.limits.backstop_distance = stored(&constraints.backstop_distance, f32::INFINITY);
+        self.limits.backstop_radius = stored(&constraints.backstop_radius, 1.0);
+        if self
+            .limits
+            .backstop_distance
+            .iter()
+            .all(|d| d.is_infinite())
+        {
+            (self.limits.backstop_distance, self.limits.backstop_radius) = Default::default();
         }
-        let held = self.max_distance.iter().enumerate();
+        let held = self.limits.max_distance.iter().enumerate();
         self.held = held
             .filter(|(_, most)| **most == 0.0)
             .map(|(i, _)| i as u32)
@@ -263,14 +246,14 @@ impl MotionState {
 
     /// Puts the targets to where the particles are at rest.
     fn rest(&mut self, topology: &Topology, level: Level) {
-        self.targets[1] = topology.rest_positions.iter().copied().collect();
-        self.normals[1] = Points::zeroed(topology.particles());
+        self.limits.targets[1] = topology.rest_positions.iter().copied().collect();
+        self.limits.normals[1] = Points::zeroed(topology.particles());
         self.compute_normals(topology, level);
         self.stay();
     }
 
     fn compute_normals(&mut self, topology: &Topology, level: Level) {
-        let (targets, normals) = (&self.targets[1], &mut self.normals[1]);
+        let (targets, normals) = (&self.limits.targets[1], &mut self.limits.normals[1]);
         match (&topology.lattice, topology.grid) {
             (Some(lattice), Some(_)) => {
                 let rows = 0..lattice.rows as usize;
@@ -289,9 +272,9 @@ impl MotionState {
 
     /// Takes all motion out of the step.
     fn stay(&mut self) {
-        let [start, end] = &mut self.targets;
+        let [start, end] = &mut self.limits.targets;
         start.copy_from(end);
-        let [start, end] = &mut self.normals;
+        let [start, end] = &mut self.limits.normals;
         start.copy_from(end);
         self.moving = false;
     }
@@ -314,18 +297,18 @@ impl MotionState {
         };
         for i in 0..targets.positions[0].len() {
             let stored = topology.order.stored(i as u32) as usize;
-            self.targets[1].set(stored, point(targets.position(i)));
+            self.limits.targets[1].set(stored, point(targets.position(i)));
         }
         if targets.normals[0].is_empty() {
             // For a backstop alone.
-            if !self.backstop_distance.is_empty() {
+            if !self.limits.backstop_distance.is_empty() {
                 self.compute_normals(topology, level);
             }
         } else {
             for i in 0..targets.normals[0].len() {
                 let stored = topology.order.stored(i as u32) as usize;
                 let normal = vector(targets.normal(i)).normalize_or_zero();
-                self.normals[1].set(stored, normal);
+                self.limits.normals[1].set(stored, normal);
             }
         }
         self.moving = true;
@@ -333,64 +316,11 @@ impl MotionState {
 
     /// How far the target moves in this step that moves furthest \[m\].
     fn furthest(&self) -> f32 {
-        let [start, end] = &self.targets;
+        let [start, end] = &self.limits.targets;
         let squared = start.iter().zip(end.iter());
         squared
             .map(|(from, to)| from.distance_squared(to))
             .fold(0.0, f32::max)
             .sqrt()
-    }
-
-    /// Moves what is held at its target on by one substep.
-    pub(crate) fn advance(&self, substep: &Substep, particles: &mut ClothParticles) {
-        let ClothParticles {
-            position, limited, ..
-        } = particles;
-        let left = substep.left() as f32;
-        for &i in limited.iter() {
-            let i = i as usize;
-            if i < self.targets[1].len() {
-                let (from, to) = (position.get(i), self.targets[1].get(i));
-                let next = if left > 1.0 {
-                    from + (to - from) / left
-                } else {
-                    to
-                };
-                position.set(i, next);
-            }
-        }
-    }
-
-    /// Keeps the free particles within their limits.
-    pub(crate) fn hold(&self, substep: &Substep, particles: &mut ClothParticles) {
-        let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            ..
-        } = particles;
-        let len = position.len();
-        if self.max_distance.len() != len {
-            return;
-        }
-        let [start, end] = &self.targets;
-        let [normals_from, normals_to] = &self.normals;
-        let (from, to) = substep.fractions();
-        let limits = Limits {
-            targets: [start, end],
-            fractions: (from, if substep.left() == 1 { 1.0 } else { to }),
-            max_distance: &self.max_distance,
-            backstop: (!self.backstop_distance.is_empty()).then_some(Backstop {
-                normals: [normals_from, normals_to],
-                distance: &self.backstop_distance,
-                radius: &self.backstop_radius,
-            }),
-        };
-        let position = SharedPoints::new(position);
-        let previous = SharedPoints::new(previous_position);
-        let inv_mass = Shared::new(inv_mass);
-        substep.crew.share(0..len, |range| {
-            limit::hold(substep.level, limits, position, previous, inv_mass, range);
-        });
     }
 }

@@ -3,7 +3,10 @@
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::memory::heap;
+use tailorbird_solver::{
+    memory::heap,
+    particles::{Input, Particles, State},
+};
 
 use super::{ClothMotionTargets, MotionState};
 use crate::{
@@ -181,15 +184,20 @@ impl TargetSamples {
 impl MotionState {
     /// Takes each particle along with its target, where that was put elsewhere.
     pub(super) fn take_along(&self, particles: &mut ClothParticles) {
-        let [start, end] = &self.targets;
-        let ClothParticles {
-            position,
-            previous_position,
-            step_position,
-            inv_mass,
-            limited,
+        let [start, end] = &self.limits.targets;
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    step_position,
+                    ..
+                },
+            input: Input {
+                inv_mass, limited, ..
+            },
             ..
-        } = particles;
+        } = &mut particles.0;
         let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
         for i in free.chain(limited.iter().map(|&i| i as usize)) {
             let way = end.get(i) - start.get(i);

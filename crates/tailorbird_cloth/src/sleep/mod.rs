@@ -2,7 +2,6 @@
 //!
 #![doc = include_str!("README.md")]
 
-mod stillness;
 mod unseen;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -199,7 +198,12 @@ fn around(
 ) -> Around {
     let mut hasher = DefaultHasher::new();
     let room = ROOM + material.margin().max(0.0);
-    for collider in colliders.near(frame, bounds, layers.copied().unwrap_or_default(), room) {
+    for collider in colliders.list.near(
+        frame,
+        bounds.bounds(),
+        layers.copied().unwrap_or_default().layers(),
+        room,
+    ) {
         collider.hash(&mut hasher);
     }
     Around {
@@ -306,8 +310,14 @@ impl ClothStagesItem<'_, '_> {
             return;
         }
         let seconds = step.seconds();
-        let carries = self.particles.around.bodies.pushed(colliders);
-        let still = self.particles.is_at_rest(self.sleep.speed, seconds);
+        let carries = self
+            .particles
+            .0
+            .scratch
+            .around
+            .bodies
+            .pushed(&colliders.list);
+        let still = self.particles.0.is_at_rest(self.sleep.speed, seconds);
         let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
         // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
         if carries || led || !(still || self.rest.around.is_some()) {
@@ -316,7 +326,7 @@ impl ClothStagesItem<'_, '_> {
             return;
         }
         self.rest.seconds += seconds;
-        self.particles.slow_down(part_kept(self.rest.seconds));
+        self.particles.0.slow_down(part_kept(self.rest.seconds));
     }
 
     /// What [`rest_cloths`] does for one cloth.
@@ -339,7 +349,7 @@ impl ClothStagesItem<'_, '_> {
             self.material,
         ));
         if self.sleep.enabled && self.rest.seconds >= self.sleep.seconds {
-            self.particles.stop();
+            self.particles.0.stop();
             self.rest.asleep = Some(step.steps());
         }
     }

@@ -3,6 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::particles::{Particles, State};
 
 use super::{ClothRest, ClothSleep};
 use crate::{
@@ -104,13 +105,13 @@ pub fn carry_unseen(
             Unseen::Since(_) | Unseen::Touched(_) => {
                 if let Some(turn) = attached.carry(frame, &mut particles) {
                     normals.turn(turn);
-                    particles.begin_step();
+                    particles.0.begin_step();
                     let around = ClothBounds::around(step.level(), &particles);
                     bounds.set_if_neq(around.unwrap_or_default());
                 }
             }
             Unseen::Back => {
-                particles.begin_step();
+                particles.0.begin_step();
                 let by_others = attached.motion_of_all(frame, &particles);
                 let motion = by_others.unwrap_or_else(|| frame.felt_motion());
                 // What was put elsewhere in this step has no velocity.
@@ -125,20 +126,24 @@ pub fn carry_unseen(
 impl ClothParticles {
     /// Gives the free particles the velocity of a rigid motion that takes so long \[s\].
     fn go_along(&mut self, motion: Isometry3d, seconds: f32) {
-        if self.substep_seconds <= 0.0 {
-            self.substep_seconds = seconds;
+        if self.0.state.substep_seconds <= 0.0 {
+            self.0.state.substep_seconds = seconds;
         }
         let part = if seconds > 0.0 {
-            self.substep_seconds / seconds
+            self.0.state.substep_seconds / seconds
         } else {
             0.0
         };
-        let Self {
-            position,
-            previous_position,
-            lost_displacement,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    lost_displacement,
+                    ..
+                },
             ..
-        } = self;
+        } = &mut self.0;
         let back = Isometry3d::new(
             -part * Vec3::from(motion.translation),
             Quat::IDENTITY.slerp(motion.rotation.inverse(), part.min(1.0)),

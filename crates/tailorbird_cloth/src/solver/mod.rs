@@ -52,21 +52,13 @@
 //! them. The method and its limits are explained
 //! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_cloth/src/solver/kernels/README.md).
 
-mod calm;
-pub(crate) mod chains;
-mod classic;
-mod fabric;
-mod give;
-mod slowing;
-
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{effort, kernels::verlet::Verlet, topology::Topology};
+use tailorbird_solver::{coefficients::Method, solve, topology::Topology};
 
 use crate::{
     cloth::Cloth,
-    particles::ClothParticles,
-    stages::{ClothStages, ClothStagesItem, Substep, for_each_awake},
+    stages::{ClothStages, for_each_awake},
     step::ClothStep,
 };
 
@@ -109,6 +101,14 @@ impl ClothSolver {
         }
     }
 
+    /// The same for the solver.
+    pub(crate) fn method(self) -> Method {
+        match self {
+            Self::Chains => Method::Lines,
+            Self::GaussSeidel => Method::Springs,
+        }
+    }
+
     /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
     /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
@@ -125,7 +125,7 @@ impl ClothSolver {
 pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        integrate(&substep, &mut cloth);
+        cloth.solve(|cloth| solve::integrate(&substep, cloth));
     });
 }
 
@@ -136,109 +136,14 @@ pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Clo
 pub fn solve_constraints(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        solve(&substep, &mut cloth);
+        cloth.solve(|cloth| solve::solve(&substep, cloth));
     });
-}
-
-/// Moves the particles of one cloth.
-pub(crate) fn integrate(substep: &Substep, cloth: &mut ClothStagesItem) {
-    let (topology, material) = (cloth.topology, cloth.material);
-    let particles = &mut *cloth.particles;
-    let seconds = substep.seconds;
-    particles.calm_strained(seconds, substep.out());
-    let verlet = Verlet {
-        seconds,
-        seconds_before: particles.substep_seconds,
-        damping: if material.damping >= 0.0 {
-            material.damping
-        } else {
-            0.0
-        },
-        gravity: cloth.frame.vector_to_frame(substep.gravity),
-    };
-    let moved = *cloth.solver == ClothSolver::Chains
-        && chains::integrate(substep, topology, material, verlet, particles);
-    let ClothParticles {
-        position,
-        previous_position,
-        lost_displacement,
-        acceleration,
-        inv_mass,
-        pins,
-        ..
-    } = particles;
-    if !moved {
-        verlet.step(
-            substep.level,
-            position,
-            previous_position,
-            lost_displacement,
-            (!acceleration.is_empty()).then_some(&*acceleration),
-            inv_mass,
-        );
-    }
-    for pin in pins.iter() {
-        let i = pin.particle as usize;
-        let from = position.get(i);
-        position.set(i, from + (pin.target - from) / substep.left() as f32);
-    }
-    particles.move_grabbed(topology, substep.left(), seconds);
-    particles.substep_seconds = seconds;
 }
 
 /// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
 pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
     let substep = step.in_progress();
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        calm(&substep, &mut cloth);
+        cloth.solve(|cloth| solve::calm(&substep, cloth));
     });
-}
-
-/// What [`calm_knots`] does for one cloth.
-pub(crate) fn calm(substep: &Substep, cloth: &mut ClothStagesItem) {
-    let solves = *cloth.solver == ClothSolver::Chains && substep.iterations > 0;
-    if solves && substep.left() == 1 {
-        let pass = chains::Pass::of(substep, cloth.topology, cloth.material, 0);
-        let longest = pass.slack() + effort::STRAIN;
-        let seconds = substep.seconds * substep.count as f32;
-        let (level, particles) = (substep.level, &mut *cloth.particles);
-        calm::calm(level, cloth.topology, longest, seconds, particles);
-        cloth.particles.disturb(cloth.topology);
-    }
-}
-
-/// Holds the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
-pub(crate) fn solve(substep: &Substep, cloth: &mut ClothStagesItem) {
-    let (topology, material) = (cloth.topology, cloth.material);
-    if let Some(forces) = &mut cloth.pin_forces {
-        forces.begin(substep, &cloth.particles);
-    }
-    let (attached, frame) = (&mut *cloth.attached, &*cloth.frame);
-    attached.stretch(substep, frame, &mut cloth.particles);
-    match cloth.solver {
-        ClothSolver::Chains => {
-            for k in 0..substep.iterations {
-                let pass = chains::Pass::of(substep, topology, material, k);
-                pass.solve(cloth.tethers, &mut cloth.particles);
-            }
-            let size = chains::Pass::of(substep, topology, material, 0).size();
-            (cloth.particles).slow_strained(substep.seconds, [substep.out(), size]);
-        }
-        ClothSolver::GaussSeidel => {
-            classic::solve(substep, topology, material, &mut cloth.particles);
-        }
-    }
-    let springs = attached.measure(frame, &mut cloth.particles);
-    if let Some(forces) = &mut cloth.pin_forces {
-        forces.end(substep, frame, &cloth.particles, springs);
-    }
-    if let Some(motion) = cloth.motion {
-        motion.hold(substep, &mut cloth.particles);
-    }
-}
-
-/// α̃ = α/h² [1/kg] of a compliance [m/N].
-pub(crate) fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
-    // What is not finite would turn into NaN in the product with a multiplier of 0.
-    (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
 }

@@ -11,6 +11,7 @@ use tailorbird_solver::{
         breeze::{self, Breeze},
         lanes::SharedPoints,
     },
+    particles::{Input, Particles, Scratch, State},
     points::Points,
     wind::{WAVES, Wave, WindShape, sine, strength},
 };
@@ -22,7 +23,6 @@ use crate::{
     cloth::Cloth,
     error::{ClothStatus, ErrorSource},
     frame::{ClothFrame, split},
-    particles::ClothParticles,
     sampling::SampledPoses,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
@@ -245,7 +245,8 @@ impl BlowingWind {
         let mut velocity = Vec3::ZERO;
         let mut varies = false;
         for (source, whole) in self.reaching(ball) {
-            cloth.particles.effort.driven += source.velocity.length() + source.turbulence.speed;
+            cloth.particles.0.state.effort.driven +=
+                source.velocity.length() + source.turbulence.speed;
             if whole && !source.turbulence.is_some() {
                 velocity += source.velocity;
             } else {
@@ -261,10 +262,10 @@ impl BlowingWind {
         }
         let level = step.level();
         let wind = frame.vector_to_frame(velocity);
-        cloth.particles.accelerations();
+        cloth.particles.0.accelerations();
         let particles = &mut *cloth.particles;
-        let mut per_second = if particles.substep_seconds > 0.0 {
-            particles.substep_seconds.recip()
+        let mut per_second = if particles.0.state.substep_seconds > 0.0 {
+            particles.0.state.substep_seconds.recip()
         } else {
             0.0
         };
@@ -276,8 +277,11 @@ impl BlowingWind {
             let uneven = |(source, whole): &(&Source, bool)| !whole || source.turbulence.is_some();
             let breezes = self.reaching(ball).filter(uneven);
             let breezes = breezes.map(|(source, whole)| source.breeze(frame, whole));
-            let (position, previous) = (&particles.position, &particles.previous_position);
-            let with_air = &mut particles.previous_with_air;
+            let (position, previous) = (
+                &particles.0.state.position,
+                &particles.0.state.previous_position,
+            );
+            let with_air = &mut particles.0.scratch.previous_with_air;
             if with_air.len() != previous.len() {
                 *with_air = Points::zeroed(previous.len());
             }
@@ -290,14 +294,24 @@ impl BlowingWind {
                 });
             }
         }
-        let ClothParticles {
-            position,
-            previous_position,
-            acceleration,
-            inv_mass,
-            previous_with_air,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    ..
+                },
+            input:
+                Input {
+                    acceleration,
+                    inv_mass,
+                    ..
+                },
+            scratch: Scratch {
+                previous_with_air, ..
+            },
             ..
-        } = particles;
+        } = &mut particles.0;
         let previous = if varies {
             &*previous_with_air
         } else {

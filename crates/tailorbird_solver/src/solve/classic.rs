@@ -1,19 +1,20 @@
 //! The classic solver: springs one by one.
 
-use tailorbird_solver::{
+use super::alpha_tilde;
+use crate::{
+    coefficients::Coefficients,
     kernels::distance,
+    particles::{Input, Particles, Scratch, State},
+    substep::Substep,
     topology::{Topology, constraints::ConstraintFamily},
 };
 
-use super::alpha_tilde;
-use crate::{material::ClothMaterial, particles::ClothParticles, stages::Substep};
-
 /// Passes over all springs, batch by batch.
-pub(super) fn solve(
+pub fn solve(
     substep: &Substep,
     topology: &Topology,
-    material: &ClothMaterial,
-    particles: &mut ClothParticles,
+    material: &Coefficients,
+    particles: &mut Particles,
 ) {
     let cell_area = topology.cell_area();
     let alpha_tilde = |family| {
@@ -27,10 +28,10 @@ pub(super) fn solve(
         alpha_tilde(compliance, substep.seconds)
     };
     let constraints = topology.constraints();
-    let ClothParticles {
-        position,
-        inv_mass,
-        lambda,
+    let Particles {
+        state: State { position, .. },
+        input: Input { inv_mass, .. },
+        scratch: Scratch { lambda, .. },
         ..
     } = particles;
     if position.is_empty() {

@@ -20,31 +20,44 @@
 //! two whose frequency is that of the substeps. Without pins it stays, so that momentum is kept; what pins pull moves the body
 //! but gives it no velocity beyond what stops it, so that it does not bounce on a spring that is none of the fabric's.
 
-use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use tailorbird_solver::{
+
+use super::{Body, ColliderId, Colliders};
+use crate::{
+    frame::Frame,
     kernels::solid::{Contact, Motion},
     points::Points,
+    substep::Substep,
 };
-
-use super::{ClothColliders, ClothReaction, ColliderBody};
-use crate::{frame::ClothFrame, stages::Substep};
 
 /// Time in which a cloth forgets a load \[s\].
 const LOADED: f32 = 0.25;
 
 /// The bodies as one cloth has moved them in this step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Bodies {
+pub struct Bodies {
     pub list: Vec<Proxy>,
     /// The largest force on them in the last while \[N\].
     pub load: f32,
 }
 
+/// What cloth did to a body in a step, in world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reaction {
+    /// Momentum that the body got \[N s\].
+    pub impulse: Vec3,
+    /// Angular momentum about its centre of mass \[N m s\].
+    pub angular_impulse: Vec3,
+    /// By how far cloth moved it within the step \[m\].
+    pub translation: Vec3,
+    /// By how much cloth turned it about its centre of mass: axis times angle \[rad\].
+    pub rotation: Vec3,
+}
+
 /// What a cloth did to a body so far in this step, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Proxy {
-    pub done: ClothReaction,
+pub struct Proxy {
+    pub done: Reaction,
     /// Where the body was moved to and turned by at the start of the substep.
     start: (Vec3, Vec3),
     /// Velocities that it has got [m/s], [rad/s].
@@ -78,14 +91,14 @@ impl Bodies {
     }
 
     /// Whether this cloth touched one in this step that cloth can move.
-    pub fn pushed(&self, colliders: &ClothColliders) -> bool {
+    pub fn pushed(&self, colliders: &Colliders) -> bool {
         let pairs = self.list.iter().zip(&colliders.bodies);
         let mut touched = pairs.filter(|(proxy, _)| proxy.touched);
         touched.any(|(_, body)| body.inv_mass != Vec3::ZERO)
     }
 
     /// One for each body of the step, and on by the velocity that they have got.
-    pub fn advance(&mut self, bodies: &[ColliderBody], substep: &Substep) {
+    pub fn advance(&mut self, bodies: &[Body], substep: &Substep) {
         if self.list.len() != bodies.len() {
             self.list.clear();
             self.list.resize(bodies.len(), Proxy::default());
@@ -116,7 +129,7 @@ impl Proxy {
     }
 
     /// Gives it an impulse \[N s\] · substep at an arm from its centre of mass \[m\].
-    fn push(&mut self, body: &ColliderBody, arm: Vec3, impulse: Vec3, seconds: f32, moves: bool) {
+    fn push(&mut self, body: &Body, arm: Vec3, impulse: Vec3, seconds: f32, moves: bool) {
         if impulse == Vec3::ZERO {
             return;
         }
@@ -136,8 +149,8 @@ impl Proxy {
 }
 
 /// A body in a substep.
-pub(super) struct Struck<'a> {
-    pub body: &'a ColliderBody,
+pub struct Struck<'a> {
+    pub body: &'a Body,
     pub proxy: &'a mut Proxy,
     /// Where the collider was to be at the start and at the end of the substep, in the world.
     pub given: [Isometry3d; 2],
@@ -150,9 +163,9 @@ pub(super) struct Struck<'a> {
 
 /// A particle in contact with a body, which carries a part of it along the normal while the constraints are solved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Coupling {
+pub struct Coupling {
     /// The collider: its entity, and which of the entity's.
-    pub collider: (Entity, (u32, u32)),
+    pub collider: ColliderId,
     /// Which of the bodies of the step.
     pub body: usize,
     pub particle: usize,
@@ -170,7 +183,7 @@ pub(crate) struct Coupling {
 
 impl Coupling {
     pub fn new(
-        collider: (Entity, (u32, u32)),
+        collider: ColliderId,
         body: usize,
         particle: usize,
         normal: Vec3,
@@ -191,7 +204,7 @@ impl Coupling {
 
 /// What many particles together do to a body in a substep.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pull {
+pub struct Pull {
     /// \[N s\] · substep.
     impulse: Vec3,
     /// About the centre of mass \[N m s\] · substep.
@@ -222,7 +235,7 @@ impl Struck<'_> {
     }
 
     /// Where the collider is in the cloth's frame at the start and at the end of the substep, as far as it is known.
-    pub fn way(&self, frame: &ClothFrame) -> [Isometry3d; 2] {
+    pub fn way(&self, frame: &Frame) -> [Isometry3d; 2] {
         let [from, to] = self.given;
         let from = self.proxy.displaced(from, self.center_before, false);
         let to = self.proxy.displaced(to, self.center, true);
@@ -231,7 +244,7 @@ impl Struck<'_> {
     }
 
     /// How it moves in the cloth's frame.
-    pub fn motion(&self, frame: &ClothFrame) -> Motion {
+    pub fn motion(&self, frame: &Frame) -> Motion {
         super::narrow::motion(self.way(frame), self.friction)
     }
 
@@ -270,7 +283,7 @@ impl Struck<'_> {
     pub fn strike(
         &mut self,
         contact: Contact,
-        frame: &ClothFrame,
+        frame: &Frame,
         (i, w): (usize, f32),
         pressed: Option<f32>,
         [position, previous]: [&mut Points; 2],

@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-use crate::particles::ClothParticles;
+use crate::particles::Particles;
 
 /// How many particles that lie side by side are looked at together.
 const RUN: usize = 16;
@@ -13,25 +13,25 @@ const MEAN: f32 = 0.25;
 /// How many times as fast as the whole a run may be at rest.
 const FASTEST: f32 = 5.0;
 
-impl ClothParticles {
+impl Particles {
     /// Whether runs of particles are as near to their mean place of the last while as if they went at `speed` [m/s], root of the mean
     /// square, and none [`FASTEST`] times as far. To be asked once in each step.
     ///
     /// A crease that trembles stays where it is, however fast; what swings does not.
-    pub(super) fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
+    pub fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
         let runs = self.len().div_ceil(RUN);
-        let known = self.calm.len() == runs;
-        self.calm.resize(runs, Vec3::ZERO);
+        let known = self.state.calm.len() == runs;
+        self.state.calm.resize(runs, Vec3::ZERO);
         let part = if known {
             seconds / (MEAN + seconds)
         } else {
             1.0
         };
         let (mut sum, mut most) = (0.0, 0.0_f32);
-        for (run, calm) in self.calm.iter_mut().enumerate() {
-            let run = run * RUN..((run + 1) * RUN).min(self.inv_mass.len());
+        for (run, calm) in self.state.calm.iter_mut().enumerate() {
+            let run = run * RUN..((run + 1) * RUN).min(self.input.inv_mass.len());
             let mean = |list: &[f32]| list[run.clone()].iter().sum::<f32>() / run.len() as f32;
-            let position = &self.position;
+            let position = &self.state.position;
             let place = Vec3::new(mean(&position.x), mean(&position.y), mean(&position.z));
             let away = (place - *calm).length_squared();
             *calm += part * (place - *calm);
@@ -43,11 +43,11 @@ impl ClothParticles {
     }
 
     /// Takes all but a part of what it moved in this step away, and of its velocity.
-    pub(super) fn slow_down(&mut self, kept: f32) {
+    pub fn slow_down(&mut self, kept: f32) {
         if kept == 1.0 {
             return;
         }
-        let w = &self.inv_mass;
+        let w = &self.input.inv_mass;
         let axis = |now: &mut [f32], previous: &mut [f32], start: &[f32], lost: &mut [f32]| {
             let lists = now
                 .iter_mut()
@@ -65,17 +65,17 @@ impl ClothParticles {
                 *lost = 0.0;
             }
         };
-        let (p, q) = (&mut self.position, &mut self.previous_position);
-        let (s, l) = (&self.step_position, &mut self.lost_displacement);
+        let (p, q) = (&mut self.state.position, &mut self.state.previous_position);
+        let (s, l) = (&self.state.step_position, &mut self.state.lost_displacement);
         axis(&mut p.x, &mut q.x, &s.x, &mut l.x);
         axis(&mut p.y, &mut q.y, &s.y, &mut l.y);
         axis(&mut p.z, &mut q.z, &s.z, &mut l.z);
     }
 
     /// Takes all velocity away, also for interpolation.
-    pub(super) fn stop(&mut self) {
-        self.step_position.copy_from(&self.position);
-        self.previous_position.copy_from(&self.position);
-        self.lost_displacement.fill(Vec3::ZERO);
+    pub fn stop(&mut self) {
+        self.state.step_position.copy_from(&self.state.position);
+        self.state.previous_position.copy_from(&self.state.position);
+        self.state.lost_displacement.fill(Vec3::ZERO);
     }
 }

@@ -2,35 +2,34 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Mat3, Vec3};
 use fearless_simd::Level;
-use tailorbird_solver::kernels::{
-    ball::{Ball, Ground},
-    capsule::Capsule,
-    contact::{Out, Phase, Touching},
-    cuboid::Cuboid,
-    cylinder::Cylinder,
-    half_space::{self, MovingHalfSpace},
-    lanes::{Shared, SharedPoints},
-    patches::{Patches, Seen},
-    planes::Planes,
-    solid::{self, Contact, Motion},
-    sphere::{self, MovingSphere},
-    terrain::Terrain,
-};
 
 use super::{
+    MovingCollider, combined_friction,
     near::Around,
     sight::{Sight, look},
-    snapshot::MovingCollider,
     solid::Solid,
-    stages::combined_friction,
 };
 use crate::{
+    cloth::Cloth,
     frame::shortest,
-    particles::ClothParticles,
-    stages::{ClothStagesItem, Substep},
+    kernels::{
+        ball::{Ball, Ground},
+        capsule::Capsule,
+        contact::{Out, Phase, Touching},
+        cuboid::Cuboid,
+        cylinder::Cylinder,
+        half_space::{self, MovingHalfSpace},
+        lanes::{Shared, SharedPoints},
+        patches::{Patches, Seen},
+        planes::Planes,
+        solid::{self, Contact, Motion},
+        sphere::{self, MovingSphere},
+        terrain::Terrain,
+    },
+    particles::{Input, Particles, Scratch, State},
+    substep::Substep,
 };
 
 /// Calls a body of code with the kernel's form of a solid.
@@ -77,11 +76,11 @@ macro_rules! with_solid {
                 $do
             }
             Solid::Terrain { field, scale } => {
-                let cells = (field.resolution() - 1).as_vec2();
+                let cells = (field.resolution - 1).as_vec2();
                 let $name = Terrain {
-                    heights: field.heights(),
-                    resolution: field.resolution(),
-                    cell: field.size() * bevy_math::Vec2::new(scale.x, scale.z) / cells,
+                    heights: &field.heights,
+                    resolution: field.resolution,
+                    cell: field.size * bevy_math::Vec2::new(scale.x, scale.z) / cells,
                     stretch: scale.y,
                     margin,
                 };
@@ -98,16 +97,19 @@ macro_rules! with_solid {
 
 /// The particles of a cloth, as kernels take them.
 fn touching<'a>(
-    particles: &'a mut ClothParticles,
+    particles: &'a mut Particles,
     phase: Phase,
     note: bool,
     out: Out<'a>,
 ) -> Touching<'a> {
-    let ClothParticles {
-        position,
-        previous_position,
-        inv_mass,
-        contacts,
+    let Particles {
+        state: State {
+            position,
+            previous_position,
+            ..
+        },
+        input: Input { inv_mass, .. },
+        scratch: Scratch { contacts, .. },
         ..
     } = particles;
     let known = note
@@ -129,7 +131,7 @@ fn touching<'a>(
 }
 
 /// How a solid goes from one place in the frame of the particles to another.
-pub(super) fn motion([from, to]: [Isometry3d; 2], friction: f32) -> Motion {
+pub fn motion([from, to]: [Isometry3d; 2], friction: f32) -> Motion {
     let axes = Mat3::from_quat(to.rotation);
     Motion {
         from: from.translation.into(),
@@ -157,14 +159,9 @@ fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
 const FAST: f32 = 2.0;
 
 impl MovingCollider {
-    /// What tells it from others.
-    pub fn key(&self) -> (Entity, (u32, u32)) {
-        (self.entity, self.part)
-    }
-
     /// Whether it goes through the cloth, at this speed [m/s].
     fn passes(&self, speed: f32, around: &mut Around) -> bool {
-        let at = around.passing.iter().position(|key| *key == self.key());
+        let at = around.passing.iter().position(|key| *key == self.id);
         if let Some(at) = at
             && speed < 0.5 * FAST
         {
@@ -175,27 +172,21 @@ impl MovingCollider {
     }
 
     /// Keeps the particles of one cloth out.
-    pub(super) fn collide(
-        &self,
-        phase: Phase,
-        substep: &Substep,
-        cloth: &mut ClothStagesItem,
-        around: &mut Around,
-    ) {
-        let (frame, material) = (&*cloth.frame, cloth.material);
+    pub fn collide(&self, phase: Phase, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
+        let (frame, material) = (&*cloth.frame, cloth.coefficients);
         let way = frame.way_to_frame(self.start, self.end, substep.fractions());
         let far = way[0].translation.distance(way[1].translation);
         if self.passes(far / substep.seconds, around) {
             return;
         }
-        let margin = self.margin + material.margin();
+        let margin = self.margin + material.margin;
         let friction = combined_friction(self.friction, material.friction);
         let motion = motion(way, friction);
         let turn = turn(way);
         // What motion constraints pull back into a collider did not go there by itself either.
         let overlaps = AtomicBool::new(false);
         let out = Out {
-            most: if cloth.motion.is_some() {
+            most: if cloth.limits.is_some() {
                 f32::INFINITY
             } else {
                 substep.out()
@@ -217,23 +208,26 @@ impl MovingCollider {
                 range.clone(),
             );
             if any {
-                if particles.effort.drawn_out && far > FAST * substep.seconds {
-                    around.passing.push(self.key());
+                if particles.state.effort.drawn_out && far > FAST * substep.seconds {
+                    around.passing.push(self.id);
                 }
                 touches = true;
                 if phase == Phase::Approach {
-                    let contacts = &mut particles.contacts;
+                    let contacts = &mut particles.scratch.contacts;
                     contacts.any = true;
                     // What turns sweeps along as it does a metre from its axis.
                     contacts.swept = contacts.swept.max(far + turn.length());
                 }
-                let points = [&particles.position, &particles.previous_position];
+                let points = [
+                    &particles.state.position,
+                    &particles.state.previous_position,
+                ];
                 around.update(substep.level, points, range);
             }
         }
-        particles.contacts.touched += usize::from(touches && phase == Phase::Approach);
-        particles.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
-        if let Some(held) = particles.grabbed {
+        particles.scratch.contacts.touched += usize::from(touches && phase == Phase::Approach);
+        particles.scratch.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
+        if let Some(held) = particles.input.grabbed {
             self.collide_held(held.particle as usize, &motion, margin, particles, around);
         }
     }
@@ -286,11 +280,11 @@ impl MovingCollider {
     }
 
     /// Lists which particles of a range touch it.
-    pub(super) fn find_touching(
+    pub fn find_touching(
         &self,
         motion: &Motion,
         margin: f32,
-        particles: &mut ClothParticles,
+        particles: &mut Particles,
         around: &Around,
         range: std::ops::Range<usize>,
         found: &mut Vec<usize>,
@@ -307,7 +301,7 @@ impl MovingCollider {
     }
 
     /// Where the path of particle `i` ends with respect to the surface.
-    pub(super) fn nearest(
+    pub fn nearest(
         &self,
         motion: &Motion,
         margin: f32,
@@ -327,10 +321,10 @@ impl MovingCollider {
         i: usize,
         motion: &Motion,
         margin: f32,
-        particles: &mut ClothParticles,
+        particles: &mut Particles,
         around: &mut Around,
     ) {
-        if let (Solid::Mesh(surface), id) = (&self.solid, self.id()) {
+        if let (Solid::Mesh(surface), id) = (&self.solid, self.surface_id()) {
             let sight = around.sights.iter_mut().find(|sight| sight.collider == id);
             if let Some(Sight { patches, .. }) = sight
                 && i < patches.holds.len()
@@ -341,18 +335,21 @@ impl MovingCollider {
             }
         }
         let path = [
-            particles.previous_position.get(i),
-            particles.position.get(i),
+            particles.state.previous_position.get(i),
+            particles.state.position.get(i),
         ];
         let contact = self.nearest(motion, margin, around, i, path);
         if contact.depth > 0.0 {
             let to = path[1] + contact.normal * contact.depth;
-            particles.position.set(i, to);
+            particles.state.position.set(i, to);
             let start = motion.turn * (path[0] - motion.from);
             let away = contact.normal.dot(to - motion.to - start).max(0.0);
             let back = motion.turn.transpose() * (contact.normal * away);
-            particles.previous_position.set(i, path[0] + back);
-            let points = [&particles.position, &particles.previous_position];
+            particles.state.previous_position.set(i, path[0] + back);
+            let points = [
+                &particles.state.position,
+                &particles.state.previous_position,
+            ];
             around.update(Level::fallback(), points, i..i + 1);
         }
     }

@@ -1,17 +1,16 @@
 //! What the chain solver does to a triangle mesh that is no grid.
 
-use tailorbird_solver::{
+use super::chains::Pass;
+use crate::{
     kernels::{
         hinge::{HingePass, Hinges},
         lanes::{Shared, SharedPoints},
         mesh::{self, Mesh},
         packed::{Packed, with_packed},
     },
+    particles::{Input, Particles, Scratch, State},
     topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
-
-use super::chains::Pass;
-use crate::particles::ClothParticles;
 
 /// How many times a substep solves each constraint of a mesh; so much softer each has to be.
 const TIMES: f32 = 2.0;
@@ -21,7 +20,7 @@ impl Pass<'_> {
     ///
     /// In one order alone, what several passes do one after the other turns some waves round: a mesh that nobody touches would gain energy.
     /// There and back it is symmetric, and takes from all of them.
-    pub(super) fn solve_fabric(&self, fabric: &Fabric, particles: &mut ClothParticles) {
+    pub fn solve_fabric(&self, fabric: &Fabric, particles: &mut Particles) {
         let passes = fabric.chains().passes.len();
         self.solve_shear(fabric, particles);
         self.solve_chains(fabric, 0..passes, particles);
@@ -29,28 +28,36 @@ impl Pass<'_> {
         self.solve_chains(fabric, (0..passes).rev(), particles);
     }
 
-    fn solve_shear(&self, fabric: &Fabric, particles: &mut ClothParticles) {
+    fn solve_shear(&self, fabric: &Fabric, particles: &mut Particles) {
         let alpha_tilde = TIMES * self.alpha_tilde(self.material.shear_compliance);
         let springs = fabric.shear();
-        let lengths = particles.grant.springs(springs);
-        with_packed(&mut particles.position, &particles.inv_mass, |all| {
-            mesh::solve_shear(springs, lengths, alpha_tilde, all);
-        });
+        let lengths = particles.state.grant.springs(springs);
+        with_packed(
+            &mut particles.state.position,
+            &particles.input.inv_mass,
+            |all| {
+                mesh::solve_shear(springs, lengths, alpha_tilde, all);
+            },
+        );
     }
 
     fn solve_chains(
         &self,
         fabric: &Fabric,
         order: impl Iterator<Item = usize>,
-        particles: &mut ClothParticles,
+        particles: &mut Particles,
     ) {
         let material = self.material;
-        let ClothParticles {
-            position,
-            inv_mass,
-            contacts,
-            effort,
-            grant,
+        let Particles {
+            state:
+                State {
+                    position,
+                    effort,
+                    grant,
+                    ..
+                },
+            input: Input { inv_mass, .. },
+            scratch: Scratch { contacts, .. },
             ..
         } = particles;
         let mesh = Mesh {
@@ -76,11 +83,15 @@ impl Pass<'_> {
     }
 
     /// Bending of what is no flat lattice.
-    pub(super) fn bend(&self, hinges: &HingeConstraints, particles: &mut ClothParticles) {
+    pub fn bend(&self, hinges: &HingeConstraints, particles: &mut Particles) {
         if !hinges.is_empty() {
-            with_packed(&mut particles.position, &particles.inv_mass, |all| {
-                self.solve_hinges(hinges, all);
-            });
+            with_packed(
+                &mut particles.state.position,
+                &particles.input.inv_mass,
+                |all| {
+                    self.solve_hinges(hinges, all);
+                },
+            );
         }
     }
 

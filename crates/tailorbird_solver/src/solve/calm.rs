@@ -1,7 +1,8 @@
 //! What is looked at after the last substep of a step, and calmed.
 
 use fearless_simd::Level;
-use tailorbird_solver::{
+
+use crate::{
     effort::{Effort, Longest, Seen},
     grant::Threads,
     kernels::{
@@ -11,34 +12,37 @@ use tailorbird_solver::{
         rigid_motion::RigidMotion,
         squeeze,
     },
+    particles::{Input, Particles, Scratch, State},
     points::Points,
     topology::{Topology, lattice::Lattice},
 };
 
-use crate::particles::ClothParticles;
-
 /// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
 /// its momentum.
-pub(crate) fn calm(
+pub fn calm(
     level: Level,
     topology: &Topology,
     allowed: f32,
     seconds: f32,
-    particles: &mut ClothParticles,
+    particles: &mut Particles,
 ) {
     if particles.is_empty() || particles.len() != topology.particles() {
         return;
     }
-    let free = !particles.inv_mass.contains(&0.0);
-    let ClothParticles {
-        position,
-        previous_position,
-        mass,
-        inv_mass,
-        effort,
-        grant,
-        contacts,
-        around,
+    let free = !particles.input.inv_mass.contains(&0.0);
+    let Particles {
+        state:
+            State {
+                position,
+                previous_position,
+                effort,
+                grant,
+                ..
+            },
+        input: Input { mass, inv_mass, .. },
+        scratch: Scratch {
+            contacts, around, ..
+        },
         ..
     } = particles;
     if let Some(lattice) = &topology.lattice {

@@ -2,14 +2,14 @@
 
 use std::{collections::BTreeMap, fmt, sync::Arc};
 
-use bevy_math::{Isometry3d, Mat3, Vec2, Vec3, Vec4};
-use tailorbird_solver::kernels::planes::PlaneList;
+use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3, Vec4};
 
-use super::{ColliderShape, ConvexHull, HeightField, TriMesh, surface::Surface};
+use super::surface::Surface;
+use crate::kernels::planes::PlaneList;
 
 /// A shape at the scale of its entity.
 #[derive(Clone)]
-pub(crate) enum Solid {
+pub enum Solid {
     Sphere { radius: f32 },
     HalfSpace,
     Capsule { radii: [f32; 2], half_length: f32 },
@@ -17,7 +17,7 @@ pub(crate) enum Solid {
     Cylinder { radius: f32, half_height: f32 },
     Hull(Arc<Hull>),
     Mesh(Arc<Surface>),
-    Terrain { field: HeightField, scale: Vec3 },
+    Terrain { field: Field, scale: Vec3 },
 }
 
 impl fmt::Debug for Solid {
@@ -28,7 +28,7 @@ impl fmt::Debug for Solid {
 
 /// Which system keeps particles out of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     Sphere,
     HalfSpace,
     Capsule,
@@ -36,99 +36,39 @@ pub(crate) enum Kind {
     Other,
 }
 
+/// Heights above the x-z plane in a grid around the origin, columns along +x, rows along +z.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Row by row \[m\].
+    pub heights: Arc<[f32]>,
+    /// Columns and rows.
+    pub resolution: UVec2,
+    /// Between the first and the last of them \[m\].
+    pub size: Vec2,
+    /// The lowest and the highest \[m\].
+    pub range: (f32, f32),
+}
+
 /// A convex hull at the scale of its entity.
 #[derive(Debug)]
-pub(crate) struct Hull {
+pub struct Hull {
     pub planes: PlaneList,
     pub size: f32,
     range: (Vec3, Vec3),
-}
-
-/// Hulls and meshes at the scales at which they are in use.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Solids(BTreeMap<(usize, [u32; 3]), (u64, Option<Solid>)>);
-
-impl Solids {
-    /// What was not used in this step is forgotten.
-    pub fn forget(&mut self, step: u64) {
-        self.0.retain(|_, (used, _)| *used == step);
-    }
-
-    /// A shape at this scale; `None` where nothing is left of it.
-    pub fn scaled(&mut self, step: u64, shape: &ColliderShape, scale: Vec3) -> Option<Solid> {
-        let most = scale.abs().max_element();
-        let solid = match *shape {
-            ColliderShape::Sphere { radius } => Solid::Sphere {
-                radius: radius * most,
-            },
-            ColliderShape::HalfSpace => Solid::HalfSpace,
-            ColliderShape::Capsule {
-                radius,
-                half_length,
-            } => Solid::Capsule {
-                radii: [radius * most; 2],
-                half_length: half_length * most,
-            },
-            ColliderShape::TaperedCapsule {
-                bottom_radius,
-                top_radius,
-                half_length,
-            } => Solid::Capsule {
-                radii: [bottom_radius * most, top_radius * most],
-                half_length: half_length * most,
-            },
-            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
-                half_size: half_size * scale.abs(),
-            },
-            ColliderShape::Cylinder {
-                radius,
-                half_height,
-            } => Solid::Cylinder {
-                radius: radius * most,
-                half_height: half_height * most,
-            },
-            ColliderShape::HeightField(ref field) => Solid::Terrain {
-                field: field.clone(),
-                scale,
-            },
-            ColliderShape::ConvexHull(ref hull) => {
-                return self.kept(step, hull.id(), scale, || {
-                    Some(Solid::Hull(Arc::new(Hull::new(hull, scale)?)))
-                });
-            }
-            ColliderShape::TriMesh(ref mesh) => {
-                return self.kept(step, mesh.id(), scale, || Solid::mesh(mesh, scale));
-            }
-            ColliderShape::Compound(_) => return None,
-        };
-        Some(solid)
-    }
-
-    fn kept(
-        &mut self,
-        step: u64,
-        id: usize,
-        scale: Vec3,
-        make: impl FnOnce() -> Option<Solid>,
-    ) -> Option<Solid> {
-        let key = (id, scale.to_array().map(f32::to_bits));
-        let (used, solid) = self.0.entry(key).or_insert_with(|| (step, make()));
-        *used = step;
-        solid.clone()
-    }
 }
 
 impl Hull {
     /// An edge or corner where planes at a distance of 1 meet further away than this from it gets a plane of its own.
     const SHARP: f32 = 2.0;
 
-    fn new(hull: &ConvexHull, scale: Vec3) -> Option<Self> {
-        let points: Vec<Vec3> = hull.points().iter().map(|p| *p * scale).collect();
+    /// The hull of these corners and triangles, counter-clockwise seen from outside, at a scale; none where nothing is left of it.
+    pub fn new(corners: &[Vec3], triangles: &[[u32; 3]], scale: Vec3) -> Option<Self> {
+        let points: Vec<Vec3> = corners.iter().map(|p| *p * scale).collect();
         let center = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
         let mut planes: Vec<Vec4> = Vec::new();
         // For each corner and each edge the normals of the faces there.
         let mut around = BTreeMap::<[u32; 2], Vec<Vec3>>::new();
-        for &[a, b, c] in hull.triangles() {
+        for &[a, b, c] in triangles {
             let [p, q, r] = [a, b, c].map(|k| points[k as usize]);
             let normal = (q - p).cross(r - p).normalize_or_zero();
             if normal == Vec3::ZERO {
@@ -182,10 +122,6 @@ fn add(planes: &mut Vec<Vec4>, normal: Vec3, point: Vec3) {
 }
 
 impl Solid {
-    fn mesh(mesh: &TriMesh, scale: Vec3) -> Option<Self> {
-        Some(Self::Mesh(Arc::new(Surface::new(mesh, scale)?)))
-    }
-
     pub fn kind(&self) -> Kind {
         match self {
             Self::Sphere { .. } => Kind::Sphere,
@@ -214,8 +150,8 @@ impl Solid {
             Self::Hull(hull) => hull.range,
             Self::Mesh(surface) => surface.range(),
             Self::Terrain { field, scale } => {
-                let half = 0.5 * field.size() * Vec2::new(scale.x, scale.z).abs();
-                let (low, high) = field.range();
+                let half = 0.5 * field.size * Vec2::new(scale.x, scale.z).abs();
+                let (low, high) = field.range;
                 let high = (low * scale.y).max(high * scale.y);
                 (
                     Vec3::new(-half.x, -DEEP, -half.y),
@@ -241,7 +177,11 @@ impl Solid {
             } => [5, two(*radius, *half_height), 0],
             Self::Hull(hull) => [6, Arc::as_ptr(hull) as u64, 0],
             Self::Mesh(surface) => [7, Arc::as_ptr(surface) as u64, 0],
-            Self::Terrain { field, scale } => [8, field.id() as u64, two(scale.x, scale.z)],
+            Self::Terrain { field, scale } => [
+                8,
+                Arc::as_ptr(&field.heights) as *const f32 as u64,
+                two(scale.x, scale.z),
+            ],
         }
     }
 }
@@ -250,11 +190,7 @@ impl Solid {
 const DEEP: f32 = 1e4;
 
 /// The box around a box that moves from one place to another, on the way as well.
-pub(crate) fn swept(
-    (low, high): (Vec3, Vec3),
-    start: &Isometry3d,
-    end: &Isometry3d,
-) -> (Vec3, Vec3) {
+pub fn swept((low, high): (Vec3, Vec3), start: &Isometry3d, end: &Isometry3d) -> (Vec3, Vec3) {
     let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
     let [a, b] = [start, end].map(|at| {
         let middle = at.rotation * center + Vec3::from(at.translation);

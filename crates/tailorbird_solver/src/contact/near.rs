@@ -2,19 +2,16 @@
 
 use std::{hash::Hash, ops::Range};
 
-use bevy_ecs::entity::Entity;
 use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
-use tailorbird_solver::{kernels::range::bounds, points::Points};
 
 use super::{
-    ClothColliders, ClothLayers,
+    ColliderId, Colliders, Layers, MovingCollider,
     bodies::{Bodies, Coupling},
     sight::Sight,
-    snapshot::MovingCollider,
     solid::{Solid, swept},
 };
-use crate::{bounds::ClothBounds, frame::ClothFrame};
+use crate::{bounds::Bounds, frame::Frame, kernels::range::bounds, points::Points};
 
 /// Particles of a block.
 const BLOCK: usize = 128;
@@ -23,11 +20,11 @@ const BLOCK: usize = 128;
 const ROOM: f32 = 0.5;
 
 /// Room around a collider for contacts that have just ended \[m\].
-pub(super) const LEAVING: f32 = 0.01;
+pub const LEAVING: f32 = 0.01;
 
 /// What a cloth knows of the colliders around it; scratch of a step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Around {
+pub struct Around {
     /// Those that are near, as places in the list of colliders.
     pub near: Vec<usize>,
     /// Where the list holds, in the world \[m\].
@@ -45,7 +42,7 @@ pub(crate) struct Around {
     /// Particles that touch something.
     pub found: Vec<usize>,
     /// Colliders that go through the cloth, as they tore it along faster than it can follow.
-    pub passing: Vec<(Entity, (u32, u32))>,
+    pub passing: Vec<ColliderId>,
 }
 
 fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
@@ -66,11 +63,11 @@ impl Around {
 
     /// What it takes on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        tailorbird_solver::memory::heap(&self.near)
-            + tailorbird_solver::memory::heap(&self.blocks)
-            + tailorbird_solver::memory::heap(&self.found)
-            + tailorbird_solver::memory::heap(&self.passing)
-            + tailorbird_solver::memory::heap(&self.couplings)
+        crate::memory::heap(&self.near)
+            + crate::memory::heap(&self.blocks)
+            + crate::memory::heap(&self.found)
+            + crate::memory::heap(&self.passing)
+            + crate::memory::heap(&self.couplings)
             + self.sights.iter().map(Sight::memory_bytes).sum::<usize>()
     }
 
@@ -78,9 +75,9 @@ impl Around {
     /// own.
     pub fn look(
         &mut self,
-        colliders: &ClothColliders,
-        frame: &ClothFrame,
-        layers: ClothLayers,
+        colliders: &Colliders,
+        frame: &Frame,
+        layers: Layers,
         margin: f32,
         (level, stage): (Level, (u32, bool)),
         [now, before]: [&Points; 2],
@@ -122,7 +119,7 @@ impl Around {
         }
         let near = &self.near;
         self.passing
-            .retain(|key| near.iter().any(|k| colliders.colliders[*k].key() == *key));
+            .retain(|key| near.iter().any(|k| colliders.colliders[*k].id == *key));
         self.sights
             .retain(|sight| near.iter().any(|k| sight.is_of(&colliders.colliders[*k])));
     }
@@ -182,14 +179,14 @@ impl Around {
     }
 }
 
-impl ClothColliders {
+impl Colliders {
     /// What tells the colliders apart that come within `room` \[m\] of a cloth's box during this step: who, which shape, from
     /// where to where.
-    pub(crate) fn near(
+    pub fn near(
         &self,
-        frame: &ClothFrame,
-        bounds: &ClothBounds,
-        layers: ClothLayers,
+        frame: &Frame,
+        bounds: Bounds,
+        layers: Layers,
         room: f32,
     ) -> impl Iterator<Item = impl Hash> {
         let near = move |collider: &&MovingCollider| {
@@ -203,7 +200,7 @@ impl ClothColliders {
             };
             let surface = [collider.friction, collider.margin].map(f32::to_bits);
             let place = [bits(&collider.start), bits(&collider.end)];
-            let who = (collider.entity, collider.part);
+            let who = collider.id;
             (who, collider.solid.bits(), surface, place)
         })
     }
@@ -211,7 +208,7 @@ impl ClothColliders {
 
 impl MovingCollider {
     /// Whether it may come within `room` \[m\] of a cloth's box.
-    fn reaches(&self, frame: &ClothFrame, bounds: &ClothBounds, room: f32) -> bool {
+    fn reaches(&self, frame: &Frame, bounds: Bounds, room: f32) -> bool {
         let frame = frame.isometry().inverse();
         let [start, end] = [self.start, self.end].map(|at| frame * at);
         let room = room + self.margin;

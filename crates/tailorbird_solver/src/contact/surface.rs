@@ -8,12 +8,11 @@ use parry3d::{
     query::{PointQueryWithLocation, Ray, RayCast},
     shape::{TriMesh as SearchMesh, TriMeshFlags},
 };
-use tailorbird_solver::kernels::patches::Patches;
 
-use super::TriMesh;
+use crate::kernels::patches::Patches;
 
 /// A triangle mesh at the scale of its entity.
-pub(crate) struct Surface {
+pub struct Surface {
     mesh: SearchMesh,
     /// Whether it has an inside.
     solid: bool,
@@ -23,11 +22,11 @@ pub(crate) struct Surface {
 
 impl Surface {
     /// `None` where nothing is left of the triangles at this scale.
-    pub fn new(mesh: &TriMesh, scale: Vec3) -> Option<Self> {
-        let positions: Vec<Vec3> = mesh.positions().iter().map(|p| *p * scale).collect();
+    pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], scale: Vec3) -> Option<Self> {
+        let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale).collect();
         let mirrored = scale.x * scale.y * scale.z < 0.0;
         let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
-        let triangles = mesh.triangles().iter().copied().map(turn).collect();
+        let triangles = triangles.iter().copied().map(turn).collect();
         let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES
             | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
             | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;

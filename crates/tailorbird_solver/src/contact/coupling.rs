@@ -3,37 +3,38 @@
 use std::{mem, ops::Range};
 
 use bevy_math::Vec3;
-use tailorbird_solver::{kernels::contact::Phase, points::Points};
 
 use super::{
-    ClothColliders,
+    Colliders, MovingCollider,
     bodies::{Coupling, Proxy, Pull, Struck},
+    combined_friction,
     near::{Around, LEAVING},
-    snapshot::MovingCollider,
-    stages::combined_friction,
 };
 use crate::{
-    particles::ClothParticles,
-    stages::{ClothStagesItem, Substep},
+    cloth::Cloth,
+    kernels::contact::Phase,
+    particles::{Input, Particles, Scratch, State},
+    points::Points,
+    substep::Substep,
 };
 
 /// The most of a particle's inverse mass that a coupling takes: the rest is lost in rounding.
 const MOST: f32 = 1.0 - 1e-5;
 
-impl ClothColliders {
+impl Colliders {
     /// Lets the particles of a cloth strike a body: those that touch it, and those that are coupled with it.
     ///
     /// Before the constraints are solved those become coupled that touch, and those stay so that are near; after that, those stay
     /// coupled that were pressed on it.
-    pub(super) fn strike(
+    pub fn strike(
         &self,
         (collider, index): (&MovingCollider, usize),
         phase: Phase,
         substep: &Substep,
-        cloth: &mut ClothStagesItem,
+        cloth: &mut Cloth,
         around: &mut Around,
     ) {
-        let (frame, material) = (&*cloth.frame, cloth.material);
+        let (frame, material) = (&*cloth.frame, cloth.coefficients);
         let Some(mut proxy) = around.bodies.list.get(index).copied() else {
             return;
         };
@@ -41,7 +42,7 @@ impl ClothColliders {
         let Some(mut struck) = self.struck((collider, index), friction, &mut proxy, substep) else {
             return;
         };
-        let margin = collider.margin + material.margin();
+        let margin = collider.margin + material.margin;
         let particles = &mut *cloth.particles;
         let mut couplings = mem::take(&mut around.couplings);
         let old = group(&couplings, collider);
@@ -66,30 +67,37 @@ impl ClothColliders {
             let known = couplings[old.clone()].binary_search_by_key(&i, |c| c.particle);
             let known = known.ok().map(|k| couplings[old.start + k]);
             let path = [
-                particles.previous_position.get(i),
-                particles.position.get(i),
+                particles.state.previous_position.get(i),
+                particles.state.position.get(i),
             ];
             let contact = collider.nearest(&struck.motion(frame), margin, around, i, path);
             if contact.depth <= 0.0 && (known.is_none() || contact.depth < -LEAVING) {
                 continue;
             }
-            let w = particles.inv_mass[i];
+            let w = particles.input.inv_mass[i];
             let before = last.then(|| known.map_or(0.0, |coupling| coupling.pressed));
-            let ClothParticles {
-                position,
-                previous_position,
+            let Particles {
+                state:
+                    State {
+                        position,
+                        previous_position,
+                        ..
+                    },
                 ..
             } = &mut *particles;
             let path = [position, previous_position];
             let impulse = struck.strike(contact, frame, (i, w), before, path);
             let pressed = impulse + before.unwrap_or(0.0);
             if w > 0.0 && (pressed > 0.0 || !last) {
-                let collider = collider.name();
+                let collider = collider.id;
                 couplings.push(Coupling::new(collider, index, i, contact.normal, pressed));
             }
         }
         couplings.drain(old);
-        let points = [&particles.position, &particles.previous_position];
+        let points = [
+            &particles.state.position,
+            &particles.state.previous_position,
+        ];
         around.update_each(substep.level, points, &found);
         around.found = found;
         around.couplings = couplings;
@@ -97,12 +105,7 @@ impl ClothColliders {
     }
 
     /// Shares bodies out to the particles that are coupled with them, and tells the constraints.
-    pub(super) fn share_out(
-        &self,
-        substep: &Substep,
-        cloth: &mut ClothStagesItem,
-        around: &mut Around,
-    ) {
+    pub fn share_out(&self, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
         let mut couplings = mem::take(&mut around.couplings);
         // What no longer comes near a collider touches it no more.
         couplings.retain(|coupling| self.find(coupling, around).is_some());
@@ -112,10 +115,12 @@ impl ClothColliders {
             bodies[coupling.body].coupled += 1;
         }
         let frame = &*cloth.frame;
-        let ClothParticles {
-            previous_position,
-            inv_mass,
-            contacts,
+        let Particles {
+            state: State {
+                previous_position, ..
+            },
+            input: Input { inv_mass, .. },
+            scratch: Scratch { contacts, .. },
             ..
         } = &mut *cloth.particles;
         contacts.pressed.clear();
@@ -152,19 +157,18 @@ impl ClothColliders {
     }
 
     /// Gives bodies what constraints pushed the particles with that are coupled with them.
-    pub(super) fn hand_over(
-        &self,
-        substep: &Substep,
-        cloth: &mut ClothStagesItem,
-        around: &mut Around,
-    ) {
+    pub fn hand_over(&self, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
         let mut couplings = mem::take(&mut around.couplings);
         let frame = &*cloth.frame;
-        let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            contacts,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    ..
+                },
+            input: Input { inv_mass, .. },
+            scratch: Scratch { contacts, .. },
             ..
         } = &mut *cloth.particles;
         let pins = motion_of_pins(inv_mass, [previous_position, position]);
@@ -179,7 +183,7 @@ impl ClothColliders {
             let Some(mut struck) = self.struck((collider, body), 0.0, &mut proxy, substep) else {
                 continue;
             };
-            let margin = collider.margin + cloth.material.margin();
+            let margin = collider.margin + cloth.coefficients.margin;
             let [from, to] = struck.way(frame);
             let motion = struck.motion(frame);
             let mut pulled = Pull::default();
@@ -223,7 +227,7 @@ impl ClothColliders {
     fn find(&self, coupling: &Coupling, around: &Around) -> Option<&MovingCollider> {
         let near = around.near.iter().filter_map(|&k| self.colliders.get(k));
         near.into_iter()
-            .find(|c| c.name() == coupling.collider && c.body == Some(coupling.body))
+            .find(|c| c.id == coupling.collider && c.body == Some(coupling.body))
     }
 
     /// A body in a substep.
@@ -262,7 +266,7 @@ fn motion_of_pins(inv_mass: &[f32], [from, to]: [&Points; 2]) -> Option<Vec3> {
 
 /// The couplings of a collider, which lie side by side in the order of particles.
 fn group(couplings: &[Coupling], collider: &MovingCollider) -> Range<usize> {
-    let name = collider.name();
+    let name = collider.id;
     let is_own = |coupling: &Coupling| coupling.collider == name;
     let first = couplings.iter().position(is_own).unwrap_or(0);
     let count = couplings[first..].iter().take_while(|c| is_own(c)).count();

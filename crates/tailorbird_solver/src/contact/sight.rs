@@ -1,30 +1,29 @@
 //! What the particles of a cloth see of triangle meshes.
 
-use bevy_ecs::prelude::*;
-use tailorbird_solver::{
+use super::{ColliderId, MovingCollider, near::Around, solid::Solid, surface::Surface};
+use crate::{
     kernels::{
         patches::{Patches, outdated},
         solid::Motion,
     },
+    particles::Particles,
     points::Points,
+    substep::Substep,
 };
-
-use super::{near::Around, snapshot::MovingCollider, solid::Solid, surface::Surface};
-use crate::{particles::ClothParticles, stages::Substep};
 
 /// What the particles of a cloth see of a mesh.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sight {
-    pub(super) collider: Option<(Entity, (u32, u32), u64)>,
-    pub(super) patches: Patches,
+pub struct Sight {
+    pub collider: Option<(ColliderId, u64)>,
+    pub patches: Patches,
     /// Particles whose plane holds no longer; scratch.
     outdated: Vec<usize>,
 }
 
 impl Sight {
     /// Whether it is of this collider.
-    pub(super) fn is_of(&self, collider: &MovingCollider) -> bool {
-        self.collider.is_some() && self.collider == collider.id()
+    pub fn is_of(&self, collider: &MovingCollider) -> bool {
+        self.collider.is_some() && self.collider == collider.surface_id()
     }
 
     /// What it takes on the heap \[byte\].
@@ -39,7 +38,7 @@ impl Sight {
         points.iter().sum::<usize>()
             + offset.memory_bytes()
             + holds.memory_bytes()
-            + tailorbird_solver::memory::heap(&self.outdated)
+            + crate::memory::heap(&self.outdated)
     }
 }
 
@@ -47,8 +46,8 @@ static NOTHING: std::sync::LazyLock<Patches> = std::sync::LazyLock::new(Patches:
 
 impl Around {
     /// What the particles see of this collider.
-    pub(super) fn seen(&self, collider: &MovingCollider) -> &Patches {
-        let id = collider.id();
+    pub fn seen(&self, collider: &MovingCollider) -> &Patches {
+        let id = collider.surface_id();
         let sight = self.sights.iter().find(|sight| sight.collider == id);
         sight.map_or(&NOTHING, |sight| &sight.patches)
     }
@@ -56,24 +55,24 @@ impl Around {
 
 impl MovingCollider {
     /// What tells a mesh, at its scale, from others.
-    pub(super) fn id(&self) -> Option<(Entity, (u32, u32), u64)> {
+    pub fn surface_id(&self) -> Option<(ColliderId, u64)> {
         let Solid::Mesh(_) = self.solid else {
             return None;
         };
-        Some((self.entity, self.part, self.solid.bits()[1]))
+        Some((self.id, self.solid.bits()[1]))
     }
 
     /// Sees to it that the planes that particles see of a mesh are right.
-    pub(super) fn prepare(
+    pub fn prepare(
         &self,
         motion: &Motion,
         margin: f32,
-        particles: &mut ClothParticles,
+        particles: &mut Particles,
         around: &mut Around,
         substep: &Substep,
         range: std::ops::Range<usize>,
     ) {
-        let (Solid::Mesh(surface), id) = (&self.solid, self.id()) else {
+        let (Solid::Mesh(surface), id) = (&self.solid, self.surface_id()) else {
             return;
         };
         let len = particles.len();
@@ -96,7 +95,7 @@ impl MovingCollider {
             substep.level,
             patches,
             motion,
-            (&particles.position, &particles.inv_mass),
+            (&particles.state.position, &particles.input.inv_mass),
             range,
             |i| found.push(i),
         );
@@ -107,16 +106,16 @@ impl MovingCollider {
 }
 
 /// Looks for the plane that a particle sees of a mesh.
-pub(super) fn look(
+pub fn look(
     surface: &Surface,
     patches: &mut Patches,
     motion: &Motion,
-    particles: &ClothParticles,
+    particles: &Particles,
     i: usize,
     margin: f32,
 ) {
     let inverse = motion.axes.transpose();
-    let from = inverse * (motion.turn * (particles.previous_position.get(i) - motion.from));
-    let to = inverse * (particles.position.get(i) - motion.to);
+    let from = inverse * (motion.turn * (particles.state.previous_position.get(i) - motion.from));
+    let to = inverse * (particles.state.position.get(i) - motion.to);
     surface.look(patches, i, [from, to], margin);
 }

@@ -1,9 +1,12 @@
 //! How what is strained is slowed.
 
 use bevy_math::Vec3;
-use tailorbird_solver::{kernels::rigid_motion::RigidMotion, topology::Topology};
 
-use crate::particles::ClothParticles;
+use crate::{
+    kernels::rigid_motion::RigidMotion,
+    particles::{Input, Particles, Scratch, State},
+    topology::Topology,
+};
 
 /// What is farther apart than the cloth is large, times this, comes back faster [-]: no hand or post draws it out so far.
 const FAR: f32 = 1.5;
@@ -38,34 +41,43 @@ struct Led {
     held: usize,
 }
 
-impl ClothParticles {
+impl Particles {
     fn led(&mut self, out: f32) -> Led {
-        let mut scratch = std::mem::take(&mut self.lambda);
+        let mut scratch = std::mem::take(&mut self.scratch.lambda);
         let led = self.led_with(out, &mut scratch);
-        self.lambda = scratch;
+        self.scratch.lambda = scratch;
         led
     }
 
     fn led_with(&self, out: f32, lengths: &mut Vec<f32>) -> Led {
-        let held = self.inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0);
-        let ways =
-            (held.clone()).map(|(i, _)| self.position.get(i) - self.previous_position.get(i));
+        let held = self
+            .input
+            .inv_mass
+            .iter()
+            .enumerate()
+            .filter(|(_, w)| **w == 0.0);
+        let ways = (held.clone())
+            .map(|(i, _)| self.state.position.get(i) - self.state.previous_position.get(i));
         lengths.clear();
         lengths.extend(ways.clone().map(Vec3::length));
         let farthest = lengths.iter().copied().fold(0.0, f32::max);
-        let touching = if self.contacts.any {
-            self.contacts.swept
+        let touching = if self.scratch.contacts.any {
+            self.scratch.contacts.swept
         } else {
             0.0
         };
         // It comes out of what it is in, and where it cannot it comes to rest.
-        let swept = if self.contacts.any && self.contacts.overlaps {
-            touching + out * self.effort.lulled().max(LEAST_OUT)
+        let swept = if self.scratch.contacts.any && self.scratch.contacts.overlaps {
+            touching + out * self.state.effort.lulled().max(LEAST_OUT)
         } else {
             touching
         };
         let Some(middle) = lengths.len().checked_sub(1).map(|last| last / 2) else {
-            let whole = RigidMotion::of_all(&self.mass, &self.position, &self.previous_position);
+            let whole = RigidMotion::of_all(
+                &self.input.mass,
+                &self.state.position,
+                &self.state.previous_position,
+            );
             return Led {
                 way: whole.displacement,
                 // The ground stops what falls.
@@ -85,56 +97,58 @@ impl ClothParticles {
             way: sum / f32::max(count, 1.0),
             reach: middle.max(swept),
             farthest: farthest.max(touching),
-            apart: extent(held.map(|(i, _)| self.position.get(i))),
+            apart: extent(held.map(|(i, _)| self.state.position.get(i))),
             held: lengths.len(),
         }
     }
 
     /// Slows what is strained, as seen from what holds it, during a substep. `out` is how far colliders push \[m\].
-    pub(crate) fn calm_strained(&mut self, seconds: f32, out: f32) {
-        if !self.effort.recovers {
+    pub fn calm_strained(&mut self, seconds: f32, out: f32) {
+        if !self.state.effort.recovers {
             return;
         }
         let Led { way, reach, .. } = self.led(out);
-        let most = (self.effort.speed() + self.effort.driven) * seconds + reach;
+        let most = (self.state.effort.speed() + self.state.effort.driven) * seconds + reach;
         let part = 1.0 - (-CALMED * seconds).exp();
-        for (i, w) in self.inv_mass.iter().enumerate() {
+        for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let before = self.previous_position.get(i);
-                let moved = self.position.get(i) - before - way;
+                let before = self.state.previous_position.get(i);
+                let moved = self.state.position.get(i) - before - way;
                 let kept = ((1.0 - part) * moved).clamp_length_max(most);
-                self.previous_position.set(i, before + moved - kept);
+                self.state.previous_position.set(i, before + moved - kept);
             }
         }
     }
 
     /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `out` is how far colliders push, and `size`
     /// how large the cloth is \[m\].
-    pub(crate) fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
-        if self.contacts.any {
-            let speed = self.contacts.swept / seconds;
-            self.effort.struck = self.effort.struck.max(speed);
+    pub fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
+        if self.scratch.contacts.any {
+            let speed = self.scratch.contacts.swept / seconds;
+            self.state.effort.struck = self.state.effort.struck.max(speed);
         }
-        if !self.effort.settles() {
+        if !self.state.effort.settles() {
             return;
         }
         let led = self.led(out);
-        let around = [led.held, self.contacts.touched];
-        let driven = self.effort.driven;
+        let around = [led.held, self.scratch.contacts.touched];
+        let driven = self.state.effort.driven;
         let fastest = driven.max(led.farthest / seconds);
-        self.effort.pass(seconds, fastest, around);
-        let mut speed = 2.0 * self.effort.speed() + driven;
-        if !self.contacts.any {
+        self.state.effort.pass(seconds, fastest, around);
+        let mut speed = 2.0 * self.state.effort.speed() + driven;
+        if !self.scratch.contacts.any {
             let far = f32::max(FAR * size, led.apart + size);
-            speed += RATE * (extent(self.previous_position.iter()) - far).max(0.0);
+            speed += RATE * (extent(self.state.previous_position.iter()) - far).max(0.0);
         }
         let most = speed * seconds + led.reach;
-        for (i, w) in self.inv_mass.iter().enumerate() {
+        for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let start = self.previous_position.get(i) + led.way;
-                let moved = self.position.get(i) - start;
+                let start = self.state.previous_position.get(i) + led.way;
+                let moved = self.state.position.get(i) - start;
                 if moved.length_squared() > most * most {
-                    self.position.set(i, start + moved.clamp_length_max(most));
+                    self.state
+                        .position
+                        .set(i, start + moved.clamp_length_max(most));
                 }
             }
         }
@@ -142,14 +156,18 @@ impl ClothParticles {
 
     /// A sheet in a perfect plane that something presses within that plane would stand as a board: pushes its particles out of it, each
     /// by its own part of 10 µm.
-    pub(crate) fn disturb(&mut self, topology: &Topology) {
+    pub fn disturb(&mut self, topology: &Topology) {
         const FLAT: f32 = 1e-4;
         const PUSH: f32 = 1e-5;
-        let Self {
-            position,
-            previous_position,
-            inv_mass,
-            contacts,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    ..
+                },
+            input: Input { inv_mass, .. },
+            scratch: Scratch { contacts, .. },
             ..
         } = self;
         let flat = topology.flat && position.z.iter().all(|z| z.abs() < FLAT);
@@ -163,7 +181,7 @@ impl ClothParticles {
         }
         for (i, w) in inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let push = PUSH * tailorbird_solver::numbers::unit_of(i as u32);
+                let push = PUSH * crate::numbers::unit_of(i as u32);
                 position.z[i] += push;
                 previous_position.z[i] += push;
             }

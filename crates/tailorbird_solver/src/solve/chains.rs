@@ -1,7 +1,9 @@
 //! The chain solver: what it does to a cloth in a substep. The page beside the kernels, `kernels/README.md`, explains it.
 
 use fearless_simd::Level;
-use tailorbird_solver::{
+
+use crate::{
+    coefficients::Coefficients,
     crew::Crew,
     kernels::{
         edges::LineStiffness,
@@ -15,14 +17,10 @@ use tailorbird_solver::{
         verlet::Verlet,
         viscosity::{self, Beside, Motion},
     },
+    particles::{Input, Particles, Scratch, State},
+    substep::Substep,
+    tethers::{Anchors, Tethers},
     topology::{Topology, lattice::Lattice},
-};
-
-use crate::{
-    material::ClothMaterial,
-    particles::ClothParticles,
-    stages::Substep,
-    tethers::{Anchors, ClothTethers},
 };
 
 /// How much longer than at rest a tether is [-]: what is left to the chains.
@@ -35,11 +33,11 @@ const CURVED_SLACK: f32 = 1.005;
 const STRETCH_ROOM: f32 = 20.0;
 
 /// One pass over the constraints.
-pub(crate) struct Pass<'a> {
+pub struct Pass<'a> {
     pub level: Level,
     pub crew: Crew<'a>,
     pub topology: &'a Topology,
-    pub material: &'a ClothMaterial,
+    pub material: &'a Coefficients,
     /// Length of the substep \[s\].
     pub seconds: f32,
     /// Strength of gravity [m/s²].
@@ -53,7 +51,7 @@ impl<'a> Pass<'a> {
     pub fn of(
         substep: &Substep<'a>,
         topology: &'a Topology,
-        material: &'a ClothMaterial,
+        material: &'a Coefficients,
         k: u32,
     ) -> Self {
         Self {
@@ -70,7 +68,7 @@ impl<'a> Pass<'a> {
 
 impl Pass<'_> {
     /// α̃ = α/h² [1/kg].
-    pub(super) fn alpha_tilde(&self, compliance: f32) -> f32 {
+    pub fn alpha_tilde(&self, compliance: f32) -> f32 {
         super::alpha_tilde(compliance, self.seconds)
     }
 
@@ -91,7 +89,7 @@ impl Pass<'_> {
     }
 
     /// How large the cloth is \[m\].
-    pub(super) fn size(&self) -> f32 {
+    pub fn size(&self) -> f32 {
         match (&self.topology.lattice, &self.topology.fabric) {
             (Some(lattice), _) => {
                 lattice.rows.max(lattice.columns) as f32 * lattice.spacing.max_element()
@@ -120,16 +118,20 @@ impl Pass<'_> {
     /// The particles as columns and rows, and where they were at the start of the substep.
     fn sheet<'a>(
         &self,
-        particles: &'a mut ClothParticles,
+        particles: &'a mut Particles,
         [columns, rows]: [usize; 2],
     ) -> (Sheet<'a>, SharedPoints<'a>) {
-        let ClothParticles {
-            position,
-            previous_position,
-            inv_mass,
-            contacts,
-            effort,
-            grant,
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    effort,
+                    grant,
+                    ..
+                },
+            input: Input { inv_mass, .. },
+            scratch: Scratch { contacts, .. },
             ..
         } = particles;
         let granted = grant.overall();
@@ -148,36 +150,39 @@ impl Pass<'_> {
         (sheet, SharedPoints::new(previous_position))
     }
 
-    pub(super) fn is_odd(&self) -> bool {
+    pub fn is_odd(&self) -> bool {
         self.number % 2 == 1
     }
 
     /// Tethers, bending, shear, then whole lines: rows and columns, and the other way round in every second pass.
-    pub fn solve(&self, tethers: &ClothTethers, particles: &mut ClothParticles) {
+    pub fn solve(&self, tethers: &Tethers, particles: &mut Particles) {
         let topology = self.topology;
         if particles.len() != topology.particles() || particles.is_empty() {
             return;
         }
-        let slack = self.slack() * (1.0 + particles.grant.largest());
+        let slack = self.slack() * (1.0 + particles.state.grant.largest());
         // A hand does not pull the cloth further from its pins than it reaches.
-        if let Some(held) = particles.grabbed {
+        if let Some(held) = particles.input.grabbed {
             let i = held.particle as usize;
-            let position = &mut particles.position;
+            let position = &mut particles.state.position;
             let from = position.get(i);
             position.set(i, tethers.reached(held.particle, from, position, slack));
         }
         let all = particles.len();
         let (level, crew) = (self.level, self.crew);
-        for coupling in &mut particles.around.couplings {
-            let place = particles.position.get(coupling.particle);
+        for coupling in &mut particles.scratch.around.couplings {
+            let place = particles.state.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
         let fresh = tethers.is_fresh();
-        match tethers.anchors(&particles.position, &particles.previous_position) {
+        match tethers.anchors(
+            &particles.state.position,
+            &particles.state.previous_position,
+        ) {
             Anchors::Straight(tethers) => {
                 if let Some(lattice) = &topology.lattice {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-                    let effort = particles.effort;
+                    let effort = particles.state.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
                     let how = (slack, self.recovery(effort, fresh, start));
                     crew.share(0..rows, |rows| {
@@ -186,7 +191,7 @@ impl Pass<'_> {
                 }
             }
             Anchors::Lengths(tethers) => {
-                let effort = particles.effort;
+                let effort = particles.state.effort;
                 let (sheet, start) = self.sheet(particles, [all, 1]);
                 let how = (slack, self.recovery(effort, fresh, start));
                 crew.share(0..all, |range| {
@@ -194,8 +199,8 @@ impl Pass<'_> {
                 });
             }
         }
-        for coupling in &mut particles.around.couplings {
-            let place = particles.position.get(coupling.particle);
+        for coupling in &mut particles.scratch.around.couplings {
+            let place = particles.state.position.get(coupling.particle);
             coupling.held -= coupling.normal.dot(place);
         }
         self.bend(&topology.hinges, particles);
@@ -206,10 +211,10 @@ impl Pass<'_> {
         }
     }
 
-    fn solve_lattice(&self, lattice: &Lattice, particles: &mut ClothParticles) {
+    fn solve_lattice(&self, lattice: &Lattice, particles: &mut Particles) {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let (level, odd) = (self.level, self.is_odd());
-        let density = particles.areal_density;
+        let density = particles.input.areal_density;
         let (sheet, _) = self.sheet(particles, [columns, rows]);
         let [dx, dy] = lattice.spacing.to_array();
         let shear = Shear {
@@ -248,14 +253,14 @@ impl Pass<'_> {
 }
 
 /// Internal viscosity, and inertia in the same sweep where there is one. Returns whether the particles moved.
-pub(crate) fn integrate(
+pub fn integrate(
     substep: &Substep,
     topology: &Topology,
-    material: &ClothMaterial,
+    material: &Coefficients,
     verlet: Verlet,
-    particles: &mut ClothParticles,
+    particles: &mut Particles,
 ) -> bool {
-    let seconds_before = particles.substep_seconds;
+    let seconds_before = particles.state.substep_seconds;
     let damped = material.viscosity > 0.0
         && seconds_before > 0.0
         && !particles.is_empty()
@@ -263,15 +268,25 @@ pub(crate) fn integrate(
     if !damped {
         return false;
     }
-    let density = particles.areal_density;
-    let ClothParticles {
-        position,
-        previous_position,
-        lost_displacement,
-        acceleration,
-        mass,
-        inv_mass,
-        lambda: scratch,
+    let density = particles.input.areal_density;
+    let Particles {
+        state:
+            State {
+                position,
+                previous_position,
+                lost_displacement,
+                ..
+            },
+        input:
+            Input {
+                acceleration,
+                mass,
+                inv_mass,
+                ..
+            },
+        scratch: Scratch {
+            lambda: scratch, ..
+        },
         ..
     } = particles;
     let rigid = RigidMotion::fit(mass, position, previous_position);

@@ -1,6 +1,7 @@
 //! What a cloth gives way to that is asked for more than its fabric has; [`effort`] tells when.
 
-use tailorbird_solver::{
+use super::chains::Pass;
+use crate::{
     effort::Effort,
     kernels::{
         lanes::SharedPoints,
@@ -8,8 +9,6 @@ use tailorbird_solver::{
         recovery::Recovery,
     },
 };
-
-use super::chains::Pass;
 
 /// No cloth counts as smaller than this \[m\].
 const SMALLEST: f32 = 1e-3;
@@ -53,7 +52,7 @@ const PULL: f32 = 5.0;
 impl Pass<'_> {
     /// How what is farther from a pin than it reaches comes back; none where it does so at once. `fresh` is whether some
     /// of the pins are new.
-    pub(super) fn recovery<'b>(
+    pub fn recovery<'b>(
         &self,
         effort: Effort,
         fresh: bool,
@@ -69,7 +68,7 @@ impl Pass<'_> {
     }
 
     /// How far lines give way, where so much strain is granted to the cloth.
-    pub(super) fn give(&self, effort: Effort, granted: f32, touches: bool) -> Give {
+    pub fn give(&self, effort: Effort, granted: f32, touches: bool) -> Give {
         if !effort.recovers {
             return Give::default();
         }

@@ -1,0 +1,247 @@
+//! The rigid frame that particles live in, and its motion during a step.
+
+use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use bevy_reflect::prelude::*;
+
+use crate::{
+    kernels::rigid,
+    particles::{Input, Particles, State},
+    substep::Substep,
+};
+
+/// The rigid frame that particles live in, and its path in a step.
+#[derive(Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Default)]
+pub struct Frame {
+    /// At the start of the step.
+    #[doc(hidden)]
+    pub start: Isometry3d,
+    /// At the end of the step.
+    #[doc(hidden)]
+    pub end: Isometry3d,
+    /// At the end of the substep in progress: what the particles' coordinates refer to.
+    #[doc(hidden)]
+    pub current: Isometry3d,
+    /// From `start` to `current` \[m\]: exact where coordinates of the world are not.
+    #[doc(hidden)]
+    pub offset: Vec3,
+    /// How much of the motion of this step is felt.
+    #[doc(hidden)]
+    #[reflect(ignore)]
+    pub felt: Felt,
+    /// From where the last substep began to where the frame is now, as the particles were taken.
+    #[doc(hidden)]
+    #[reflect(ignore)]
+    pub taken: Option<Taken>,
+    /// How far the frame was put elsewhere before this step.
+    #[doc(hidden)]
+    #[reflect(ignore)]
+    pub jump: Option<Isometry3d>,
+}
+
+/// How what does not follow the frame by itself came from the frame as it was into the frame as it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken {
+    /// How the frame was turned, and how far from where the step began.
+    pub from: (Quat, Vec3),
+    /// How particles that do not follow the frame by themselves were taken into it.
+    pub motion: Isometry3d,
+}
+
+/// How much of the motion of a step is felt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt {
+    /// Of the way [-].
+    pub linear: f32,
+    /// Of the turn [-].
+    pub angular: f32,
+    /// The angular velocity, in world axes, whose centrifugal acceleration acts beside that [rad/s].
+    pub spin: Vec3,
+}
+
+impl Default for Felt {
+    fn default() -> Self {
+        Self {
+            linear: 1.0,
+            angular: 1.0,
+            spin: Vec3::ZERO,
+        }
+    }
+}
+
+impl Felt {
+    /// Whether it is the whole motion.
+    pub fn is_all(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// The same rotation by no more than π.
+pub fn shortest(rotation: Quat) -> Quat {
+    if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    }
+}
+
+impl Frame {
+    /// Where the frame is in the world.
+    pub fn isometry(&self) -> Isometry3d {
+        self.current
+    }
+
+    /// A point of the frame in the world \[m\].
+    pub fn to_world(&self, point: Vec3) -> Vec3 {
+        self.current.rotation * point + Vec3::from(self.current.translation)
+    }
+
+    /// A point of the world in the frame \[m\].
+    pub fn to_frame(&self, point: Vec3) -> Vec3 {
+        let offset = point - Vec3::from(self.start.translation) - self.offset;
+        self.current.rotation.inverse() * offset
+    }
+
+    /// A point of the world in the frame at the end of the step \[m\].
+    pub fn to_frame_at_end(&self, point: Vec3) -> Vec3 {
+        self.end.rotation.inverse() * (point - Vec3::from(self.end.translation))
+    }
+
+    /// A direction of the frame in world axes.
+    pub fn vector_to_world(&self, vector: Vec3) -> Vec3 {
+        self.current.rotation * vector
+    }
+
+    /// A direction of the world in the frame's axes.
+    pub fn vector_to_frame(&self, vector: Vec3) -> Vec3 {
+        self.current.rotation.inverse() * vector
+    }
+
+    /// How the entity was turned where it was put elsewhere before this step; none where it was not.
+    pub fn jump_turn(&self) -> Option<Quat> {
+        self.jump.map(|jump| jump.rotation)
+    }
+
+    /// Where something that goes from `start` to `end` in this step begins for a cloth that was put elsewhere with its entity:
+    /// what was put elsewhere with it was as near to it before.
+    pub fn start_of(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
+        let Some(jump) = self.jump else {
+            return start;
+        };
+        let taken_along = jump * start;
+        let far = |at: Isometry3d| at.translation.distance_squared(end.translation);
+        if far(taken_along) < far(start) {
+            taken_along
+        } else {
+            start
+        }
+    }
+
+    /// The way during a substep, in the frame as it is, of something that goes through the world from `start` to `end` in this
+    /// step. It begins as far from the particles as it then was.
+    pub fn way_to_frame(
+        &self,
+        start: Isometry3d,
+        end: Isometry3d,
+        fractions: (f32, f32),
+    ) -> [Isometry3d; 2] {
+        let start = self.start_of(start, end);
+        // Differences first: they are exact where coordinates are large.
+        let first = Vec3::from(start.translation - self.start.translation);
+        let way = Vec3::from(end.translation - start.translation);
+        let at = |fraction: f32| {
+            let rotation = if start.rotation == end.rotation {
+                end.rotation
+            } else {
+                start.rotation.slerp(end.rotation, fraction)
+            };
+            (rotation, first + fraction * way)
+        };
+        let into = |(turn, offset): (Quat, Vec3), (rotation, place): (Quat, Vec3)| {
+            let inverse = turn.inverse();
+            Isometry3d::new(inverse * (place - offset), inverse * rotation)
+        };
+        let now = (self.current.rotation, self.offset);
+        let begin = at(fractions.0);
+        let begin = match &self.taken {
+            Some(taken) => taken.motion * into(taken.from, begin),
+            None => into(now, begin),
+        };
+        [begin, into(now, at(fractions.1))]
+    }
+
+    /// What is felt of the motion of this step, in the frame's axes at its start.
+    pub fn felt_motion(&self) -> Isometry3d {
+        let motion = self.start.inverse() * self.end;
+        Isometry3d::new(
+            self.felt.linear * Vec3::from(motion.translation),
+            Quat::IDENTITY.slerp(shortest(motion.rotation), self.felt.angular),
+        )
+    }
+
+    /// Whether the frame moves during this step.
+    pub fn is_moving(&self) -> bool {
+        self.start != self.end
+    }
+
+    /// Moves on by one substep.
+    pub fn advance(&mut self, substep: &Substep, particles: &mut Particles) {
+        if !self.is_moving() {
+            self.taken = None;
+            particles.hold_still();
+            return;
+        }
+        let (_, fraction) = substep.fractions();
+        let way = Vec3::from(self.end.translation - self.start.translation);
+        if substep.index == 0 {
+            let seconds = substep.seconds * substep.count as f32;
+            (particles.state.effort).carried([self.start, self.end], seconds);
+        }
+        let (offset, to) = if substep.left() == 1 {
+            (way, self.end)
+        } else {
+            let offset = fraction * way;
+            let place = Vec3::from(self.start.translation) + offset;
+            let rotation = self.start.rotation.slerp(self.end.rotation, fraction);
+            (offset, Isometry3d::new(place, rotation))
+        };
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    lost_displacement,
+                    ..
+                },
+            input:
+                Input {
+                    acceleration,
+                    inv_mass,
+                    ..
+                },
+            ..
+        } = particles;
+        let from = (self.current.rotation, self.offset);
+        (self.current, self.offset) = (to, offset);
+        let inverse: Quat = to.rotation.inverse();
+        let shift = inverse * (from.1 - offset);
+        let turn = inverse * from.0;
+        let rotation = Mat3::from_quat(turn);
+        rigid::rotate(rotation, acceleration);
+        let (rotation, shift) = if self.felt.is_all() {
+            (rotation, shift)
+        } else {
+            let turn = Quat::IDENTITY.slerp(turn, self.felt.angular);
+            let shift = self.felt.linear * shift;
+            let motion = Isometry3d::new(shift, turn);
+            self.taken = Some(Taken { from, motion });
+            (Mat3::from_quat(turn), shift)
+        };
+        rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
+        rigid::rotate(rotation, lost_displacement);
+        if self.felt.spin != Vec3::ZERO {
+            let turned = inverse * self.felt.spin * substep.seconds;
+            rigid::fling(turned, inv_mass, position);
+        }
+    }
+}

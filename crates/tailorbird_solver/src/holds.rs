@@ -1,0 +1,282 @@
+//! What the attachments of a cloth hold during a step.
+
+use bevy_math::Vec3;
+
+use crate::{
+    frame::Frame,
+    kernels::spring,
+    memory::heap,
+    particles::Particles,
+    pose::{Map, Pose},
+    solve::alpha_tilde,
+    substep::Substep,
+    topology::order::ParticleOrder,
+};
+
+/// The particles of a cloth that others hold, and where.
+#[derive(Clone, Debug, Default)]
+pub struct Holds {
+    pub bodies: Vec<Holder>,
+    /// By body and particle, one of each particle.
+    pub rigid: Vec<Hold>,
+    pub springs: Vec<Spring>,
+    pub order: ParticleOrder,
+    /// Whether something changed that wakes the cloth.
+    pub disturbed: bool,
+    /// How far the point goes in this step that goes furthest \[m\].
+    pub furthest: f32,
+    /// Different whenever what is held changed.
+    pub revision: u64,
+}
+
+/// What holds particles, during a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Holder {
+    /// What tells it from others, and what it goes with, as bits.
+    pub attachment: u64,
+    pub target: u64,
+    /// At the start of the step.
+    pub start: Pose,
+    /// At its end.
+    pub end: Pose,
+    /// Where it was put elsewhere from, before it moved on from `start`.
+    pub jumped: Option<Pose>,
+    /// What of its way in this step is too sudden for the cloth to feel \[m\].
+    pub excess: Vec3,
+    /// Whether it was put elsewhere by somebody who said so, and has no way in this step that tells how fast it is.
+    pub told: bool,
+    /// What its springs pulled with, summed over the substeps, in world axes \[N\].
+    pub pulled: Vec3,
+    /// Over how many substeps.
+    pub substeps: u32,
+}
+
+/// A particle at a point of an attachment.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold {
+    /// In storage order.
+    pub particle: u32,
+    /// Which of the bodies.
+    pub body: u32,
+    /// In the entity's own space \[m\].
+    pub point: Vec3,
+    /// From where the body has the point to where the particle is, at the start and at the end of the step, in the cloth's
+    /// frame \[m\].
+    pub gap: [Vec3; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Spring {
+    pub hold: Hold,
+    /// Of this particle alone [m/N].
+    pub compliance: f32,
+    /// Where its other end is in this substep \[m\].
+    anchor: Vec3,
+    /// What it was before the spring counted [1/kg].
+    inv_mass: f32,
+}
+
+impl Spring {
+    pub fn new(hold: Hold, compliance: f32) -> Self {
+        Self {
+            hold,
+            compliance,
+            anchor: Vec3::ZERO,
+            inv_mass: 0.0,
+        }
+    }
+}
+
+/// A cloth that sleeps wakes where what holds it is this far from where it was \[m\].
+const WAKES: f32 = 1e-4;
+
+/// A particle that is not where it is held goes there no faster than this [m/s].
+const CATCHES_UP: f32 = 30.0;
+
+/// A point that goes no further in a step stands still \[m\].
+pub const STANDS: f32 = 1e-5;
+
+impl Holds {
+    /// Whether nothing is attached.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// All particles that are held, in storage order.
+    pub fn particles(&self) -> impl Iterator<Item = u32> + '_ {
+        let springs = self.springs.iter().map(|spring| &spring.hold);
+        self.rigid.iter().chain(springs).map(|hold| hold.particle)
+    }
+
+    /// Different whenever other particles are held, or at other points.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        heap(&self.bodies) + heap(&self.rigid) + heap(&self.springs)
+    }
+
+    /// Whether what it hangs on moves on, however slowly.
+    pub fn is_led(&self) -> bool {
+        self.furthest > STANDS
+    }
+
+    pub fn is_disturbed(&self) -> bool {
+        self.disturbed
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.bodies.clear();
+        self.rigid.clear();
+        self.springs.clear();
+    }
+
+    /// Adds an attachment; where it has no compliance, later ones take particles from earlier ones.
+    pub fn add(&mut self, body: Holder, points: &[(u32, Vec3)], compliances: Option<&[f32]>) {
+        let hold = |&(particle, point): &(u32, Vec3)| Hold {
+            particle,
+            body: self.bodies.len() as u32,
+            point,
+            gap: [Vec3::ZERO; 2],
+        };
+        match compliances {
+            None => self.rigid.extend(points.iter().map(hold)),
+            Some(compliances) => {
+                let springs = points.iter().zip(compliances);
+                self.springs
+                    .extend(springs.map(|(at, c)| Spring::new(hold(at), *c)));
+            }
+        }
+        self.bodies.push(body);
+    }
+
+    /// When all are added: makes the rigid ones kinematic, and notes where they start. Returns whether others are held than
+    /// before.
+    pub fn finish(&mut self, frame: &Frame, particles: &mut Particles, seconds: f32) -> bool {
+        self.order = particles.order.clone();
+        self.rigid
+            .retain(|hold| !particles.is_pinned(self.order.given(hold.particle) as usize));
+        self.rigid
+            .sort_unstable_by_key(|hold| (hold.particle, u32::MAX - hold.body));
+        self.rigid.dedup_by_key(|hold| hold.particle);
+        self.rigid
+            .sort_unstable_by_key(|hold| (hold.body, hold.particle));
+        let changed = particles.attach(self.rigid.iter().map(|hold| hold.particle));
+        let at = |hold: &Hold| particles.state.position.get(hold.particle as usize);
+        let mut furthest = 0.0f32;
+        let springs = self
+            .springs
+            .iter_mut()
+            .map(|spring| (&mut spring.hold, true));
+        for (hold, is_spring) in self
+            .rigid
+            .iter_mut()
+            .map(|hold| (hold, false))
+            .chain(springs)
+        {
+            let body = &self.bodies[hold.body as usize];
+            if is_spring {
+                let moved = body.end.seen_from(frame.end).apply(hold.point)
+                    - body.start.seen_from(frame.start).apply(hold.point);
+                furthest = furthest.max(moved.length());
+            } else {
+                let start = body.start.seen_from(frame.start).apply(hold.point);
+                let gap = at(hold) - start;
+                hold.gap = [gap, gap - gap.clamp_length_max(CATCHES_UP * seconds)];
+                let end = body.end.seen_from(frame.end).apply(hold.point);
+                furthest = furthest.max(end.distance(at(hold)));
+            }
+        }
+        self.disturbed = changed || furthest > WAKES;
+        self.furthest = furthest;
+        changed
+    }
+
+    /// From a body's own space to the cloth's frame, at the end of a substep.
+    fn map(&self, body: u32, fraction: f32, frame: &Frame) -> Map {
+        let body = &self.bodies[body as usize];
+        body.start
+            .towards(&body.end, fraction)
+            .seen_from(frame.isometry())
+    }
+
+    /// Moves what is held rigidly to where it is at the end of a substep. The frame is there already.
+    pub fn advance(&mut self, substep: &Substep, frame: &Frame, particles: &mut Particles) {
+        let fraction = if substep.left() == 1 {
+            1.0
+        } else {
+            substep.fractions().1
+        };
+        let mut map: Option<(u32, Map)> = None;
+        for hold in &self.rigid {
+            let map = match map {
+                Some((body, map)) if body == hold.body => map,
+                _ => {
+                    map.insert((hold.body, self.map(hold.body, fraction, frame)))
+                        .1
+                }
+            };
+            let i = hold.particle as usize;
+            if i >= particles.len() {
+                continue;
+            }
+            let [gap, left] = hold.gap;
+            let to = map.apply(hold.point) + gap * (1.0 - fraction) + left * fraction;
+            particles.state.position.set(i, to);
+        }
+    }
+
+    /// Takes the springs into account before the constraints are solved: see [`spring`].
+    pub fn stretch(&mut self, substep: &Substep, frame: &Frame, particles: &mut Particles) {
+        let (_, fraction) = substep.fractions();
+        let fraction = if substep.left() == 1 { 1.0 } else { fraction };
+        let mut map: Option<(u32, Map)> = None;
+        for k in 0..self.springs.len() {
+            let Spring {
+                hold, compliance, ..
+            } = self.springs[k];
+            let map = match map {
+                Some((body, map)) if body == hold.body => map,
+                _ => {
+                    map.insert((hold.body, self.map(hold.body, fraction, frame)))
+                        .1
+                }
+            };
+            let i = hold.particle as usize;
+            let Some(&inv_mass) = particles.input.inv_mass.get(i) else {
+                continue;
+            };
+            let anchor = map.apply(hold.point);
+            (self.springs[k].anchor, self.springs[k].inv_mass) = (anchor, inv_mass);
+            if inv_mass > 0.0 {
+                let alpha_tilde = alpha_tilde(compliance, substep.seconds);
+                let left = spring::left(inv_mass, alpha_tilde);
+                let place = anchor + (particles.state.position.get(i) - anchor) * left;
+                particles.state.position.set(i, place);
+                particles.input.inv_mass[i] = inv_mass * left;
+            }
+        }
+    }
+
+    /// Measures the springs after the constraints are solved, and gives the particles their masses back. Returns the sum of what
+    /// they pull their bodies with, in the cloth's frame \[N\].
+    pub fn measure(&mut self, frame: &Frame, particles: &mut Particles) -> Vec3 {
+        let mut all = Vec3::ZERO;
+        for spring in self.springs.iter().rev() {
+            let i = spring.hold.particle as usize;
+            if i < particles.len() && spring.inv_mass > 0.0 {
+                let force = (particles.state.position.get(i) - spring.anchor) / spring.compliance;
+                self.bodies[spring.hold.body as usize].pulled += frame.vector_to_world(force);
+                particles.input.inv_mass[i] = spring.inv_mass;
+                all += force;
+            }
+        }
+        for body in &mut self.bodies {
+            body.substeps += 1;
+        }
+        all
+    }
+}

@@ -1,0 +1,100 @@
+//! How far particles may get from their targets.
+
+use crate::{
+    kernels::{
+        lanes::{Shared, SharedPoints},
+        limit::{self, Backstop, Limits},
+    },
+    numbers::Numbers,
+    particles::{Input, Particles, State},
+    points::Points,
+    substep::Substep,
+};
+
+/// How far particles may get from their targets during a step, in storage order.
+#[derive(Clone, Debug, Default)]
+pub struct MotionLimits {
+    /// Furthest from the target \[m\]; empty where nothing is constrained.
+    pub max_distance: Numbers,
+    /// Empty where there is no backstop \[m\].
+    pub backstop_distance: Numbers,
+    /// \[m\]
+    pub backstop_radius: Numbers,
+    /// At the start and at the end of the step, in the cloth's frame \[m\].
+    pub targets: [Points; 2],
+    /// Unit normals at the targets.
+    pub normals: [Points; 2],
+}
+
+impl MotionLimits {
+    /// What it takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let points = self.targets.iter().chain(&self.normals);
+        let numbers = [
+            &self.max_distance,
+            &self.backstop_distance,
+            &self.backstop_radius,
+        ];
+        points.map(Points::memory_bytes).sum::<usize>()
+            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
+    }
+
+    /// Moves what is held at its target on by one substep.
+    pub fn advance(&self, substep: &Substep, particles: &mut Particles) {
+        let Particles {
+            state: State { position, .. },
+            input: Input { limited, .. },
+            ..
+        } = particles;
+        let left = substep.left() as f32;
+        for &i in limited.iter() {
+            let i = i as usize;
+            if i < self.targets[1].len() {
+                let (from, to) = (position.get(i), self.targets[1].get(i));
+                let next = if left > 1.0 {
+                    from + (to - from) / left
+                } else {
+                    to
+                };
+                position.set(i, next);
+            }
+        }
+    }
+
+    /// Keeps the free particles within their limits.
+    pub fn hold(&self, substep: &Substep, particles: &mut Particles) {
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    ..
+                },
+            input: Input { inv_mass, .. },
+            ..
+        } = particles;
+        let len = position.len();
+        if self.max_distance.len() != len {
+            return;
+        }
+        let [start, end] = &self.targets;
+        let [normals_from, normals_to] = &self.normals;
+        let (from, to) = substep.fractions();
+        let limits = Limits {
+            targets: [start, end],
+            fractions: (from, if substep.left() == 1 { 1.0 } else { to }),
+            max_distance: &self.max_distance,
+            backstop: (!self.backstop_distance.is_empty()).then_some(Backstop {
+                normals: [normals_from, normals_to],
+                distance: &self.backstop_distance,
+                radius: &self.backstop_radius,
+            }),
+        };
+        let position = SharedPoints::new(position);
+        let previous = SharedPoints::new(previous_position);
+        let inv_mass = Shared::new(inv_mass);
+        substep.crew.share(0..len, |range| {
+            limit::hold(substep.level, limits, position, previous, inv_mass, range);
+        });
+    }
+}

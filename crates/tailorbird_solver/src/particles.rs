@@ -1,0 +1,401 @@
+//! The particles of one cloth: what they are, what moves them, what is computed on the way.
+
+use bevy_math::Vec3;
+
+use crate::{
+    contact::near::Around,
+    effort::Effort,
+    grant::Grant,
+    kernels::contact::Contacts,
+    memory::heap,
+    numbers::Numbers,
+    points::Points,
+    topology::{Topology, order::ParticleOrder},
+};
+
+/// The particles of one cloth, as parallel arrays in storage order, in the cloth's frame.
+#[derive(Clone, Debug, Default)]
+pub struct Particles {
+    /// The order in which all that follows is stored.
+    #[doc(hidden)]
+    pub order: ParticleOrder,
+    /// What the next step depends on.
+    #[doc(hidden)]
+    pub state: State,
+    /// What a step is told.
+    #[doc(hidden)]
+    pub input: Input,
+    /// What is computed on the way.
+    #[doc(hidden)]
+    pub scratch: Scratch,
+}
+
+/// What the next step of the particles depends on.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    /// Position \[m\].
+    pub position: Points,
+    /// Position at the start of the substep \[m\]; with `position` and `substep_seconds` it gives the velocity.
+    pub previous_position: Points,
+    /// What rounding took from the displacement of the substep \[m\]; part of the velocity.
+    pub lost_displacement: Points,
+    /// Position at the start of the step \[m\], to interpolate from, and to fall back to.
+    pub step_position: Points,
+    /// The time that `position` − `previous_position` took \[s\].
+    pub substep_seconds: f32,
+    /// How it stands with what the cloth is asked for.
+    pub effort: Effort,
+    /// How much longer than at rest the threads of a strained cloth may be.
+    pub grant: Grant,
+    /// Mean places of runs of particles in the last while \[m\].
+    pub calm: Vec<Vec3>,
+    /// The point that stayed where it was when the scale changed last \[m\].
+    pub grown_about: Vec3,
+}
+
+/// What a step is told of the particles.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// Acceleration by wind and forces during this step [m/s²]; empty where there is none.
+    pub acceleration: Points,
+    /// Mass, pinned or not \[kg\].
+    pub mass: Vec<f32>,
+    /// What the masses were made of [kg/m²].
+    pub areal_density: f32,
+    /// 1/mass [1/kg]; 0 is kinematic.
+    pub inv_mass: Numbers,
+    /// Pinned particles, by the number that was given to them.
+    pub pins: Vec<Held>,
+    /// Particles that attachments hold rigidly.
+    pub attached: Vec<u32>,
+    /// Particles that motion constraints hold at their targets.
+    pub limited: Vec<u32>,
+    /// The particle that is moved by a grab, and where to \[m\].
+    pub grabbed: Option<Held>,
+    /// Particles that are pulled along with the grabbed one.
+    pub pulled: Vec<Pulled>,
+}
+
+/// What is computed on the way.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    /// `previous_position` moved along with air that differs from place to place \[m\].
+    pub previous_with_air: Points,
+    /// Contacts in this substep, noted before the constraints are solved.
+    pub contacts: Contacts,
+    /// What is known of the colliders around.
+    pub around: Around,
+    /// Multipliers of the constraints.
+    pub lambda: Vec<f32>,
+}
+
+/// A particle that is held at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// In storage order.
+    pub particle: u32,
+    /// In the cloth's frame \[m\].
+    pub target: Vec3,
+}
+
+/// A particle that is pulled along with the grabbed one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulled {
+    /// In storage order.
+    pub particle: u32,
+    /// From the grabbed particle to where this one is pulled, in the cloth's frame \[m\].
+    pub offset: Vec3,
+    /// Part of the way there that is gone in a sixtieth of a second, 0 to 1.
+    pub weight: f32,
+}
+
+impl Particles {
+    /// Particles at rest, without mass yet.
+    pub fn at_rest(topology: &Topology) -> Self {
+        Self {
+            order: topology.order.clone(),
+            ..Self::with_positions(topology.rest_positions.iter().copied().collect())
+        }
+    }
+
+    /// Particles at these positions, without mass yet.
+    pub fn with_positions(position: Points) -> Self {
+        let len = position.len();
+        let still = Points::zeroed(len);
+        Self {
+            state: State {
+                previous_position: position.clone(),
+                step_position: position.clone(),
+                lost_displacement: still,
+                position,
+                ..State::default()
+            },
+            input: Input {
+                mass: vec![0.0; len],
+                inv_mass: Numbers::zeroed(len),
+                ..Input::default()
+            },
+            ..Self::default()
+        }
+    }
+
+    /// The number of particles.
+    pub fn len(&self) -> usize {
+        self.state.position.len()
+    }
+
+    /// What the state takes on the heap \[byte\].
+    pub fn memory_bytes(&self) -> usize {
+        let points = [
+            &self.state.position,
+            &self.state.previous_position,
+            &self.state.lost_displacement,
+            &self.state.step_position,
+            &self.input.acceleration,
+            &self.scratch.previous_with_air,
+            &self.scratch.contacts.normal,
+        ];
+        let lists = [&self.input.mass, &self.scratch.lambda];
+        let numbers = [&self.input.inv_mass, &self.scratch.contacts.depth];
+        points.map(Points::memory_bytes).iter().sum::<usize>()
+            + lists.map(heap).iter().sum::<usize>()
+            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
+            + heap(&self.input.pins)
+            + heap(&self.input.pulled)
+            + heap(&self.state.calm)
+            + self.scratch.around.memory_bytes()
+            + self.state.grant.memory_bytes()
+            + heap(&self.input.attached)
+            + heap(&self.input.limited)
+    }
+
+    /// Whether there are none: the cloth is not built yet, or its shape is invalid.
+    pub fn is_empty(&self) -> bool {
+        self.state.position.is_empty()
+    }
+
+    /// Where a particle is, in the cloth's frame \[m\].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn position(&self, i: usize) -> Vec3 {
+        self.state.position.get(self.stored(i))
+    }
+
+    /// Where all particles are, in the cloth's frame \[m\].
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        (0..self.len()).map(|i| self.position(i))
+    }
+
+    /// How the particles are numbered where they are stored.
+    pub fn order(&self) -> &ParticleOrder {
+        &self.order
+    }
+
+    fn stored(&self, i: usize) -> usize {
+        self.order.stored(i as u32) as usize
+    }
+
+    /// The coordinates as three arrays in storage order, in the cloth's frame \[m\].
+    pub fn points(&self) -> &Points {
+        &self.state.position
+    }
+
+    /// The coordinates a step before [`Self::points`], in storage order, in the cloth's frame \[m\].
+    pub fn previous_points(&self) -> &Points {
+        &self.state.step_position
+    }
+
+    /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
+    /// frame \[m\]. `i` is in storage order, as in
+    /// [`Topology::particle_of_vertex`](tailorbird_solver::topology::Topology::particle_of_vertex()).
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[inline]
+    pub fn interpolated(&self, i: usize, fraction: f32) -> Vec3 {
+        let (from, to) = (self.state.step_position.get(i), self.state.position.get(i));
+        // This form gives both ends exactly.
+        from * (1.0 - fraction) + to * fraction
+    }
+
+    /// How fast a particle moves through the world, in the axes of the cloth's frame [m/s].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn velocity(&self, i: usize) -> Vec3 {
+        self.stored_velocity(self.stored(i))
+    }
+
+    /// The velocity of a particle in storage order [m/s].
+    pub fn stored_velocity(&self, i: usize) -> Vec3 {
+        if self.state.substep_seconds > 0.0 {
+            let moved = self.state.position.get(i) - self.state.previous_position.get(i);
+            (moved + self.state.lost_displacement.get(i)) / self.state.substep_seconds
+        } else {
+            Vec3::ZERO
+        }
+    }
+
+    /// A particle's mass \[kg\].
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    pub fn mass(&self, i: usize) -> f32 {
+        self.input.mass[self.stored(i)]
+    }
+
+    /// Whether a particle is held by a pin.
+    pub fn is_pinned(&self, i: usize) -> bool {
+        self.input
+            .pins
+            .binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
+            .is_ok()
+    }
+
+    /// Whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
+    pub fn is_held(&self, i: usize) -> bool {
+        self.is_pinned(i) || {
+            let stored = self.order.stored(i as u32);
+            self.input.attached.contains(&stored) || self.input.limited.contains(&stored)
+        }
+    }
+
+    /// The pinned particles, in order.
+    pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        let given = |pin: &Held| self.order.given(pin.particle) as usize;
+        self.input.pins.iter().map(given)
+    }
+
+    /// The particle that a grab holds.
+    pub fn grabbed(&self) -> Option<usize> {
+        let given = |held: Held| self.order.given(held.particle) as usize;
+        self.input.grabbed.map(given)
+    }
+
+    /// Gives every particle its share of the mass; those that are held become kinematic.
+    pub fn set_masses(&mut self, areas: impl Iterator<Item = f32>, areal_density: f32) {
+        self.input.areal_density = areal_density;
+        for (mass, area) in self.input.mass.iter_mut().zip(areas) {
+            *mass = areal_density * area;
+        }
+        self.update_inv_masses();
+    }
+
+    /// Computes inverse masses from masses and what is held.
+    pub fn update_inv_masses(&mut self) {
+        for (inv_mass, mass) in self.input.inv_mass.iter_mut().zip(&self.input.mass) {
+            // A vertex that no triangle uses has no mass and stays where it is.
+            *inv_mass = if *mass > 0.0 { 1.0 / mass } else { 0.0 };
+        }
+        let Particles {
+            input:
+                Input {
+                    inv_mass,
+                    pins,
+                    grabbed,
+                    attached,
+                    limited,
+                    ..
+                },
+            ..
+        } = self;
+        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
+        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+            if let Some(inv_mass) = inv_mass.get_mut(i as usize) {
+                *inv_mass = 0.0;
+            }
+        }
+    }
+
+    /// Replaces the particles that attachments hold rigidly. Returns whether they are others.
+    pub fn attach(&mut self, held: impl Iterator<Item = u32> + Clone) -> bool {
+        let changed = !held.clone().eq(self.input.attached.iter().copied());
+        if changed {
+            self.input.attached.clear();
+            self.input.attached.extend(held);
+            self.update_inv_masses();
+        }
+        changed
+    }
+
+    /// Particles that are kinematic wherever they go, in storage order: what the others are tethered to.
+    pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
+        let pins = self.input.pins.iter().map(|pin| pin.particle);
+        pins.chain(
+            self.input
+                .attached
+                .iter()
+                .chain(&self.input.limited)
+                .copied(),
+        )
+    }
+
+    /// The accelerations of this step, one for each particle, to add to.
+    pub fn accelerations(&mut self) -> &mut Points {
+        let len = self.state.position.len();
+        if self.input.acceleration.len() != len {
+            self.input.acceleration.clear();
+            self.input.acceleration.resize(len, 0.0);
+        }
+        &mut self.input.acceleration
+    }
+
+    /// Kinematic particles that do not move have no velocity.
+    pub fn hold_still(&mut self) {
+        let Particles {
+            state:
+                State {
+                    position,
+                    previous_position,
+                    ..
+                },
+            input:
+                Input {
+                    pins,
+                    grabbed,
+                    attached,
+                    limited,
+                    ..
+                },
+            ..
+        } = self;
+        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
+        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+            previous_position.set(i as usize, position.get(i as usize));
+        }
+    }
+
+    /// Notes where the step starts.
+    pub fn begin_step(&mut self) {
+        self.state.step_position.copy_from(&self.state.position);
+        self.scratch.contacts.overlaps = false;
+        self.scratch.around.begin_step();
+    }
+
+    /// Puts the particles back to where the step started, without velocity.
+    pub fn reset_to_step_start(&mut self) {
+        self.state.position.copy_from(&self.state.step_position);
+        self.state
+            .previous_position
+            .copy_from(&self.state.step_position);
+        self.state.lost_displacement.fill(Vec3::ZERO);
+        self.input.acceleration.clear();
+        self.state.grant.clear();
+    }
+
+    /// Puts the particles where they are at rest, pinned ones where they are held, without velocity.
+    pub fn reset_to_rest(&mut self, topology: &Topology) {
+        if self.len() != topology.particles() {
+            return;
+        }
+        for (i, place) in topology.rest_positions.iter().enumerate() {
+            self.state.position.set(i, *place);
+        }
+        for held in &self.input.pins {
+            self.state.position.set(held.particle as usize, held.target);
+        }
+        self.begin_step();
+        self.reset_to_step_start();
+    }
+}

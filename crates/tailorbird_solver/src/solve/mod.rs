@@ -1,0 +1,120 @@
+//! What a substep does to a cloth: inertia, then constraints, then what is tangled.
+
+mod calm;
+mod chains;
+mod classic;
+mod fabric;
+mod give;
+mod slowing;
+
+use crate::{
+    cloth::Cloth,
+    coefficients::Method,
+    effort,
+    kernels::verlet::Verlet,
+    particles::{Input, Particles, State},
+    substep::Substep,
+};
+
+/// Moves the particles of one cloth.
+pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
+    let (topology, material) = (cloth.topology, cloth.coefficients);
+    let particles = &mut *cloth.particles;
+    let seconds = substep.seconds;
+    particles.calm_strained(seconds, substep.out());
+    let verlet = Verlet {
+        seconds,
+        seconds_before: particles.state.substep_seconds,
+        damping: if material.damping >= 0.0 {
+            material.damping
+        } else {
+            0.0
+        },
+        gravity: cloth.frame.vector_to_frame(substep.gravity),
+    };
+    let moved = cloth.method == Method::Lines
+        && chains::integrate(substep, topology, material, verlet, particles);
+    let Particles {
+        state:
+            State {
+                position,
+                previous_position,
+                lost_displacement,
+                ..
+            },
+        input:
+            Input {
+                acceleration,
+                inv_mass,
+                pins,
+                ..
+            },
+        ..
+    } = particles;
+    if !moved {
+        verlet.step(
+            substep.level,
+            position,
+            previous_position,
+            lost_displacement,
+            (!acceleration.is_empty()).then_some(&*acceleration),
+            inv_mass,
+        );
+    }
+    for pin in pins.iter() {
+        let i = pin.particle as usize;
+        let from = position.get(i);
+        position.set(i, from + (pin.target - from) / substep.left() as f32);
+    }
+    particles.move_grabbed(topology, substep.left(), seconds);
+    particles.state.substep_seconds = seconds;
+}
+
+/// Holds the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
+pub fn solve(substep: &Substep, cloth: &mut Cloth) {
+    let (topology, material) = (cloth.topology, cloth.coefficients);
+    if let Some(forces) = &mut cloth.forces {
+        forces.begin(substep, cloth.particles);
+    }
+    let (holds, frame) = (&mut *cloth.holds, &*cloth.frame);
+    holds.stretch(substep, frame, cloth.particles);
+    match cloth.method {
+        Method::Lines => {
+            for k in 0..substep.iterations {
+                let pass = chains::Pass::of(substep, topology, material, k);
+                pass.solve(cloth.tethers, cloth.particles);
+            }
+            let size = chains::Pass::of(substep, topology, material, 0).size();
+            (cloth.particles).slow_strained(substep.seconds, [substep.out(), size]);
+        }
+        Method::Springs => {
+            classic::solve(substep, topology, material, cloth.particles);
+        }
+    }
+    let springs = holds.measure(frame, cloth.particles);
+    if let Some(forces) = &mut cloth.forces {
+        forces.end(substep, frame, cloth.particles, springs);
+    }
+    if let Some(motion) = cloth.limits {
+        motion.hold(substep, cloth.particles);
+    }
+}
+
+/// Damps what is tangled in itself, after the last substep.
+pub fn calm(substep: &Substep, cloth: &mut Cloth) {
+    let solves = cloth.method == Method::Lines && substep.iterations > 0;
+    if solves && substep.left() == 1 {
+        let pass = chains::Pass::of(substep, cloth.topology, cloth.coefficients, 0);
+        let longest = pass.slack() + effort::STRAIN;
+        let seconds = substep.seconds * substep.count as f32;
+        let (level, particles) = (substep.level, &mut *cloth.particles);
+        calm::calm(level, cloth.topology, longest, seconds, particles);
+        cloth.particles.disturb(cloth.topology);
+    }
+}
+
+/// α̃ = α/h² [1/kg] of a compliance [m/N].
+pub fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
+    // What is not finite would turn into NaN in the product with a multiplier of 0.
+    (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
+}
