@@ -163,7 +163,7 @@ impl ClothStep {
     /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
     /// on it, and the waves of short length that tension drives become too fast for a substep.
     fn loaded(&self, particles: &ClothParticles) -> f32 {
-        let load = particles.0.scratch.around.bodies.load;
+        let load = particles.0.state.load;
         if load == 0.0 || !particles.0.input.inv_mass.contains(&0.0) {
             return 1.0;
         }

@@ -7,7 +7,7 @@
 use bevy_math::Isometry3d;
 use bevy_reflect::prelude::*;
 
-use crate::kernels::contact::Contacts;
+use crate::kernels::contact::Touch;
 
 /// How it stands with what a cloth is asked for, as was seen at the end of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -171,7 +171,7 @@ impl Effort {
     }
 
     /// Sees at the end of a step how long the edges are. What has been granted something recovers until that is taken back.
-    pub fn see(&mut self, seen: Seen, contacts: &Contacts) {
+    pub fn see(&mut self, seen: Seen, touch: Touch) {
         let Seen {
             strained,
             longest,
@@ -184,11 +184,11 @@ impl Effort {
         self.driven = 0.0;
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
-        let long = LONG[usize::from(contacts.overlaps || is_mesh && contacts.any)];
-        let still = STILL_STRAINED[usize::from(contacts.overlaps || granted || is_mesh)];
+        let long = LONG[usize::from(touch.overlaps || is_mesh && touch.any)];
+        let still = STILL_STRAINED[usize::from(touch.overlaps || granted || is_mesh)];
         let (most, long) = if self.recovers {
             (still, long[1])
-        } else if contacts.overlaps {
+        } else if touch.overlaps {
             (STRAINED_INSIDE, long[0])
         } else {
             (STRAINED, long[0])
@@ -198,7 +198,7 @@ impl Effort {
         } else {
             0
         };
-        let moment = match (contacts.overlaps || torn, contacts.any) {
+        let moment = match (touch.overlaps || torn, touch.any) {
             (true, _) => MOMENTS[0],
             (false, true) => MOMENTS[1],
             (false, false) => MOMENTS[2],
@@ -212,7 +212,7 @@ impl Effort {
         self.is_asked = self.recovers && !blown;
         self.is_told = self.recovers && (self.is_told || self.steps >= TOLD);
         let stormy = blown && strained > STRETCHED && !self.recovers;
-        let struck = self.is_strained() && self.struck > STRUCK && !contacts.overlaps;
+        let struck = self.is_strained() && self.struck > STRUCK && !touch.overlaps;
         self.struck = 0.0;
         let change = if struck {
             STRUCK_RISE

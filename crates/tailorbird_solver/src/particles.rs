@@ -3,10 +3,10 @@
 use bevy_math::Vec3;
 
 use crate::{
-    contact::near::Around,
+    contact::{ColliderId, near::Around, sight::Sight},
     effort::Effort,
     grant::Grant,
-    kernels::contact::Contacts,
+    kernels::contact::{Contacts, Touch},
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -51,6 +51,14 @@ pub struct State {
     pub calm: Vec<Vec3>,
     /// The point that stayed where it was when the scale changed last \[m\].
     pub grown_about: Vec3,
+    /// What particles see of meshes: also on which side of an open one each is.
+    pub sights: Vec<Sight>,
+    /// Colliders that go through the cloth, as they tore it along faster than it can follow.
+    pub passing: Vec<ColliderId>,
+    /// The largest force on bodies that the cloth carries, in the last while \[N\].
+    pub load: f32,
+    /// What it touched in the last substep.
+    pub touch: Touch,
 }
 
 /// What a step is told of the particles.
@@ -162,6 +170,13 @@ impl Particles {
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
             + heap(&self.input.pins)
             + heap(&self.input.pulled)
+            + heap(&self.state.passing)
+            + self
+                .state
+                .sights
+                .iter()
+                .map(Sight::memory_bytes)
+                .sum::<usize>()
             + heap(&self.state.calm)
             + self.scratch.around.memory_bytes()
             + self.state.grant.memory_bytes()
@@ -369,7 +384,7 @@ impl Particles {
     /// Notes where the step starts.
     pub fn begin_step(&mut self) {
         self.state.step_position.copy_from(&self.state.position);
-        self.scratch.contacts.overlaps = false;
+        self.state.touch.overlaps = false;
         self.scratch.around.begin_step();
     }
 

@@ -60,12 +60,13 @@ pub fn gather_reactions(
     list.clear();
     order.clear();
     for (entity, mut particles) in &mut cloths {
-        let bodies = &mut particles.bypass_change_detection().0.scratch.around.bodies;
+        let particles = &mut particles.bypass_change_detection().0;
+        let bodies = &particles.scratch.around.bodies;
         if bodies.touched() {
             order.push(entity);
         }
         if step.running {
-            bodies.note_load(step.seconds());
+            bodies.note_load(step.seconds(), &mut particles.state.load);
         }
     }
     order.sort_unstable();

@@ -37,8 +37,6 @@ const LOADED: f32 = 0.25;
 #[derive(Clone, Debug, Default)]
 pub struct Bodies {
     pub list: Vec<Proxy>,
-    /// The largest force on them in the last while \[N\].
-    pub load: f32,
 }
 
 /// What cloth did to a body in a step, in world axes.
@@ -78,15 +76,15 @@ impl Bodies {
     }
 
     /// Takes notice of the force in a step of this length \[s\]; an earlier one is forgotten within [`LOADED`].
-    pub fn note_load(&mut self, seconds: f32) {
+    pub fn note_load(&self, seconds: f32, load: &mut f32) {
         let impulses = self.list.iter().filter(|proxy| proxy.touched);
         let force = impulses
             .map(|proxy| proxy.done.impulse.length())
             .sum::<f32>()
             / seconds;
-        self.load = (self.load * (1.0 - seconds / LOADED).max(0.0)).max(force);
-        if self.load < f32::MIN_POSITIVE {
-            self.load = 0.0;
+        *load = (*load * (1.0 - seconds / LOADED).max(0.0)).max(force);
+        if *load < f32::MIN_POSITIVE {
+            *load = 0.0;
         }
     }
 

@@ -4,7 +4,7 @@ pub mod bodies;
 mod coupling;
 mod narrow;
 pub mod near;
-mod sight;
+pub mod sight;
 pub mod solid;
 pub mod surface;
 
@@ -17,7 +17,7 @@ use solid::{Kind, Solid, swept};
 use crate::{
     cloth::Cloth,
     coefficients::Method,
-    kernels::contact::Phase,
+    kernels::contact::{Phase, Touch},
     particles::{Particles, State},
     substep::Substep,
 };
@@ -110,6 +110,10 @@ impl Colliders {
         let particles = &mut *cloth.particles;
         let bodies = &mut particles.scratch.around.bodies;
         bodies.advance(&self.bodies, substep);
+        particles.state.touch = Touch {
+            overlaps: particles.state.touch.overlaps,
+            ..Touch::default()
+        };
         if cloth.method != Method::Lines || self.colliders.is_empty() {
             particles.scratch.contacts.clear();
             particles.scratch.around.couplings.clear();
@@ -121,6 +125,7 @@ impl Colliders {
         let mut around = mem::take(&mut cloth.particles.scratch.around);
         self.share_out(substep, cloth, &mut around);
         cloth.particles.scratch.around = around;
+        cloth.particles.state.touch.any = cloth.particles.scratch.contacts.any;
     }
 
     /// What the systems after the constraints do for one cloth, one after the other.
@@ -146,6 +151,8 @@ impl Colliders {
             return;
         }
         let mut around = mem::take(&mut cloth.particles.scratch.around);
+        around.sights = mem::take(&mut cloth.particles.state.sights);
+        around.passing = mem::take(&mut cloth.particles.state.passing);
         if loaded {
             self.hand_over(substep, cloth, &mut around);
         }
@@ -177,6 +184,8 @@ impl Colliders {
                 collider.collide(phase, substep, cloth, &mut around);
             }
         }
+        cloth.particles.state.sights = mem::take(&mut around.sights);
+        cloth.particles.state.passing = mem::take(&mut around.passing);
         cloth.particles.scratch.around = around;
     }
 }

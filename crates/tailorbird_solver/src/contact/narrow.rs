@@ -213,10 +213,10 @@ impl MovingCollider {
                 }
                 touches = true;
                 if phase == Phase::Approach {
-                    let contacts = &mut particles.scratch.contacts;
-                    contacts.any = true;
+                    particles.scratch.contacts.any = true;
                     // What turns sweeps along as it does a metre from its axis.
-                    contacts.swept = contacts.swept.max(far + turn.length());
+                    let touch = &mut particles.state.touch;
+                    touch.swept = touch.swept.max(far + turn.length());
                 }
                 let points = [
                     &particles.state.position,
@@ -225,8 +225,8 @@ impl MovingCollider {
                 around.update(substep.level, points, range);
             }
         }
-        particles.scratch.contacts.touched += usize::from(touches && phase == Phase::Approach);
-        particles.scratch.contacts.overlaps |= overlaps.load(Ordering::Relaxed);
+        particles.state.touch.colliders += usize::from(touches && phase == Phase::Approach);
+        particles.state.touch.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some(held) = particles.input.grabbed {
             self.collide_held(held.particle as usize, &motion, margin, particles, around);
         }

@@ -37,11 +37,11 @@ pub struct Around {
     pub bodies: Bodies,
     /// The particles that carry parts of bodies; those of each collider side by side.
     pub couplings: Vec<Coupling>,
-    /// What particles see of meshes.
+    /// What particles see of meshes: those of the state, while colliders are looked at.
     pub sights: Vec<Sight>,
     /// Particles that touch something.
     pub found: Vec<usize>,
-    /// Colliders that go through the cloth, as they tore it along faster than it can follow.
+    /// Colliders that go through the cloth: those of the state, while colliders are looked at.
     pub passing: Vec<ColliderId>,
 }
 
@@ -66,9 +66,7 @@ impl Around {
         crate::memory::heap(&self.near)
             + crate::memory::heap(&self.blocks)
             + crate::memory::heap(&self.found)
-            + crate::memory::heap(&self.passing)
             + crate::memory::heap(&self.couplings)
-            + self.sights.iter().map(Sight::memory_bytes).sum::<usize>()
     }
 
     /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides their

@@ -64,12 +64,6 @@ pub struct Contacts {
     pub pressed: Numbers,
     /// Whether there are any.
     pub any: bool,
-    /// Whether any was inside a collider that it did not enter by its own motion, in this step.
-    pub overlaps: bool,
-    /// How far what the particles touch has moved since the start of the substep \[m\].
-    pub swept: f32,
-    /// How many colliders they touch.
-    pub touched: usize,
 }
 
 impl Contacts {
@@ -84,12 +78,11 @@ impl Contacts {
         ] {
             values.clear();
         }
-        (self.any, self.swept, self.touched) = (false, 0.0, 0);
+        self.any = false;
     }
 
     /// Forgets all contacts of `len` particles.
     pub fn reset(&mut self, len: usize) {
-        (self.swept, self.touched) = (0.0, 0);
         if !self.any && self.depth.len() == len {
             return;
         }
@@ -104,6 +97,19 @@ impl Contacts {
         }
         self.any = false;
     }
+}
+
+/// What a cloth touched in a substep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// Whether it touched anything.
+    pub any: bool,
+    /// Whether any particle was inside a collider that it did not enter by its own motion, in this step.
+    pub overlaps: bool,
+    /// How far what it touches has moved since the start of the substep \[m\].
+    pub swept: f32,
+    /// How many colliders it touches.
+    pub colliders: usize,
 }
 
 /// When contacts are looked for.

@@ -37,12 +37,11 @@ pub fn calm(
                 previous_position,
                 effort,
                 grant,
+                touch,
                 ..
             },
         input: Input { mass, inv_mass, .. },
-        scratch: Scratch {
-            contacts, around, ..
-        },
+        scratch: Scratch { around, .. },
         ..
     } = particles;
     if let Some(lattice) = &topology.lattice {
@@ -61,7 +60,7 @@ pub fn calm(
                 granted: grant.is_much(),
                 is_mesh: false,
             };
-            effort.see(seen, contacts);
+            effort.see(seen, *touch);
         } else {
             *effort = Effort::default();
         }
@@ -106,7 +105,7 @@ pub fn calm(
                 granted: !grant.is_empty(),
                 is_mesh: true,
             };
-            effort.see(seen, contacts);
+            effort.see(seen, *touch);
         } else {
             *effort = Effort::default();
         }

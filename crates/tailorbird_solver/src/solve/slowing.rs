@@ -61,13 +61,13 @@ impl Particles {
         lengths.clear();
         lengths.extend(ways.clone().map(Vec3::length));
         let farthest = lengths.iter().copied().fold(0.0, f32::max);
-        let touching = if self.scratch.contacts.any {
-            self.scratch.contacts.swept
+        let touching = if self.state.touch.any {
+            self.state.touch.swept
         } else {
             0.0
         };
         // It comes out of what it is in, and where it cannot it comes to rest.
-        let swept = if self.scratch.contacts.any && self.scratch.contacts.overlaps {
+        let swept = if self.state.touch.any && self.state.touch.overlaps {
             touching + out * self.state.effort.lulled().max(LEAST_OUT)
         } else {
             touching
@@ -123,20 +123,20 @@ impl Particles {
     /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `out` is how far colliders push, and `size`
     /// how large the cloth is \[m\].
     pub fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
-        if self.scratch.contacts.any {
-            let speed = self.scratch.contacts.swept / seconds;
+        if self.state.touch.any {
+            let speed = self.state.touch.swept / seconds;
             self.state.effort.struck = self.state.effort.struck.max(speed);
         }
         if !self.state.effort.settles() {
             return;
         }
         let led = self.led(out);
-        let around = [led.held, self.scratch.contacts.touched];
+        let around = [led.held, self.state.touch.colliders];
         let driven = self.state.effort.driven;
         let fastest = driven.max(led.farthest / seconds);
         self.state.effort.pass(seconds, fastest, around);
         let mut speed = 2.0 * self.state.effort.speed() + driven;
-        if !self.scratch.contacts.any {
+        if !self.state.touch.any {
             let far = f32::max(FAR * size, led.apart + size);
             speed += RATE * (extent(self.state.previous_position.iter()) - far).max(0.0);
         }
