@@ -76,6 +76,7 @@ pub mod slow_build;
 pub mod solver;
 pub mod stages;
 pub mod step;
+pub mod substep;
 pub mod tethers;
 pub mod topology;
 #[cfg(feature = "serialize")]
@@ -119,6 +120,7 @@ pub mod prelude {
         sleep::{ClothRest, ClothSeen, ClothSleep},
         solver::ClothSolver,
         step::ClothStep,
+        substep::{SubstepCloth, SubstepCloths, SubstepContact},
         topology::{ClothTopology, report::MeshReport},
         validate::ClothReset,
         weights::ClothWeights,

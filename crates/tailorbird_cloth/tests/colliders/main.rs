@@ -8,6 +8,7 @@ mod scene;
 
 mod bad_input;
 mod bodies;
+mod custom;
 mod drops;
 mod random;
 mod runners;

@@ -34,12 +34,17 @@ impl Path {
     ///    inside does not pop out with a speed.
     #[inline]
     pub fn resolve(self, normal: Vec3, depth: f32, friction: f32, surface: Vec3) -> Self {
+        self.resolve_with(normal, depth, friction * depth, surface)
+    }
+
+    /// [`Self::resolve`], where friction takes back no more than `most` \[m\].
+    #[inline]
+    pub fn resolve_with(self, normal: Vec3, depth: f32, most: f32, surface: Vec3) -> Self {
         let mut to = self.to + normal * depth;
         let moved = to - self.from;
         let away = normal.dot(moved);
         let sliding = moved - normal * away - surface;
         let length = sliding.length();
-        let most = friction * depth;
         if length <= most {
             to -= sliding;
         } else {
