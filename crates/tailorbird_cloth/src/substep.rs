@@ -6,7 +6,7 @@
 //! ```
 //! # use bevy_app::App;
 //! # use bevy_ecs::prelude::*;
-//! # use bevy_math::Vec3;
+//! # use bevy_math::{Mat3, Vec3};
 //! # use tailorbird_cloth::{collider::find_contacts, prelude::*, substep::{SubstepCloths, SubstepContact}};
 //! const RADIUS: f32 = 2.0;
 //!
@@ -48,11 +48,13 @@
 //! # What it costs
 //!
 //! With any system of a game in the schedule all cloths take the same number of substeps, that of the one which needs most, and go through each
-//! stage together: they no longer stay in the cache from stage to stage. `cargo run --release -p tailorbird_cloth --example bench -- substep`
-//! measures it.
+//! stage together: they no longer stay in the cache from stage to stage. That is 2 to 5 % of a step for one sheet, and 13 % for a hundred of
+//! 32² (one thread, AVX-512, `cargo run --release -p tailorbird_cloth --example bench -- substep`). What the system itself does comes on top: reading
+//! all positions of 128² took 0.5 ms a step of 1.0, a solid that looks at each particle twice in a substep 1.3 ms, 5 ns a look. One pass on one
+//! thread: leave out cloths that are far away, by their [`ClothBounds`](crate::bounds::ClothBounds), say.
 
 use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
-use bevy_math::Vec3;
+use bevy_math::{Mat3, Vec3};
 use tailorbird_solver::{
     kernels::contact::Path,
     particles::{Input, Particles, Scratch, State},
@@ -112,6 +114,8 @@ impl SubstepCloths<'_, '_> {
 pub struct SubstepCloth<'w> {
     entity: Entity,
     frame: &'w ClothFrame,
+    /// From the frame's axes to the world's.
+    axes: Mat3,
     material: &'w ClothMaterial,
     particles: &'w mut Particles,
     seconds: f32,
@@ -164,6 +168,7 @@ impl<'w> SubstepCloth<'w> {
     fn new(cloth: SubstepQueryItem<'w, '_>, seconds: f32) -> Self {
         Self {
             entity: cloth.entity,
+            axes: Mat3::from_quat(cloth.frame.isometry().rotation),
             frame: cloth.frame,
             material: cloth.material,
             particles: &mut cloth.particles.into_inner().0,
@@ -196,6 +201,11 @@ impl<'w> SubstepCloth<'w> {
         self.frame
     }
 
+    #[inline]
+    fn to_world(&self, point: Vec3) -> Vec3 {
+        self.axes * point + Vec3::from(self.frame.isometry().translation)
+    }
+
     fn stored(&self, i: usize) -> usize {
         self.particles.order.stored(i as u32) as usize
     }
@@ -204,6 +214,7 @@ impl<'w> SubstepCloth<'w> {
     ///
     /// # Panics
     /// When `i` is out of range, as all methods that name a particle.
+    #[inline]
     pub fn inverse_mass(&self, i: usize) -> f32 {
         self.particles.input.inv_mass[self.stored(i)]
     }
@@ -214,16 +225,18 @@ impl<'w> SubstepCloth<'w> {
     }
 
     /// Where a particle is.
+    #[inline]
     pub fn position(&self, i: usize) -> Vec3 {
-        self.frame.to_world(self.position_in_frame(i))
+        self.to_world(self.position_in_frame(i))
     }
 
     /// Where a particle was at the start of the substep, as seen from the frame as it is now.
     pub fn previous_position(&self, i: usize) -> Vec3 {
-        self.frame.to_world(self.previous_position_in_frame(i))
+        self.to_world(self.previous_position_in_frame(i))
     }
 
     /// Where a particle is, in the frame \[m\].
+    #[inline]
     pub fn position_in_frame(&self, i: usize) -> Vec3 {
         self.particles.state.position.get(self.stored(i))
     }
@@ -317,6 +330,7 @@ impl<'w> SubstepCloth<'w> {
     }
 
     /// The contact of a free particle in storage order, and its normal in the frame's axes.
+    #[inline]
     fn touches(
         &self,
         i: usize,
@@ -330,7 +344,7 @@ impl<'w> SubstepCloth<'w> {
         if inv_mass[i] == 0.0 {
             return None;
         }
-        let contact = contact(self.frame.to_world(position.get(i)))?;
+        let contact = contact(self.to_world(position.get(i)))?;
         let normal = self.frame.vector_to_frame(contact.normal);
         contact.is_valid().then_some((contact, normal))
     }

@@ -4,8 +4,9 @@
 //! cargo run --release -p tailorbird_cloth --example bench -- hang --size 64 --json hang.json
 //! ```
 //!
-//! 5 s at 60 Hz each; `kernels` measures each kernel by itself, `colliders` what each shape costs. Prints a table; `--json` writes the same figures as an array,
-//! which `benches/peers` can draw (but for `kernels` and `colliders`). `--help` lists the rest.
+//! 5 s at 60 Hz each; `kernels` measures each kernel by itself, `colliders` what each shape costs, `substep` what systems within
+//! a substep cost. Prints a table; `--json` writes the same figures as an array,
+//! which `benches/peers` can draw (but for those). `--help` lists the rest.
 
 mod cli;
 mod colliders;
@@ -14,6 +15,7 @@ mod machine;
 mod measure;
 mod record;
 mod scene;
+mod substep;
 mod times;
 
 use std::{fs::File, io, process::ExitCode};
@@ -49,6 +51,13 @@ fn run(args: &Args) -> io::Result<()> {
         let colliders = colliders::run(args);
         if let Some(file) = file {
             serde_json::to_writer_pretty(file, &serde_json::json!({ "colliders": colliders }))?;
+        }
+        return Ok(());
+    }
+    if args.what == What::Substep {
+        let records = substep::run(args);
+        if let Some(file) = file {
+            serde_json::to_writer_pretty(file, &records)?;
         }
         return Ok(());
     }

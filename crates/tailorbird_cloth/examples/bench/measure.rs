@@ -110,7 +110,7 @@ fn compression_of(particles: &ClothParticles, topology: &Topology) -> f64 {
 }
 
 /// The middle one, or the longer one of the middle two; zero where there is none.
-fn median(mut times: Vec<Duration>) -> Duration {
+pub fn median(mut times: Vec<Duration>) -> Duration {
     times.sort_unstable();
     times.get(times.len() / 2).copied().unwrap_or_default()
 }

@@ -64,7 +64,7 @@ pub fn setups(args: &Args) -> Vec<Setup> {
         What::Hang => &[Scene::Hang],
         What::Drape => &[Scene::Drape, Scene::DrapePinned],
         What::Flags => &[Scene::Flags],
-        What::Kernels | What::Colliders => &[],
+        What::Kernels | What::Colliders | What::Substep => &[],
         What::All => &[Scene::Hang, Scene::Drape, Scene::DrapePinned, Scene::Flags],
     };
     let mut setups = Vec::new();
