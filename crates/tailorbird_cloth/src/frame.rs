@@ -13,15 +13,16 @@ use bevy_reflect::prelude::*;
 pub(crate) use split::split;
 pub use split::split_mirrored;
 use split::{check_shear, split_like};
-use tailorbird_solver::frame::Frame;
+use tailorbird_solver::{frame::Frame, step::ADVANCE};
 
 use crate::{
     cloth::Cloth,
+    collider::ClothColliders,
     error::{ClothStatus, ErrorSource},
     inertia::{ClothInertia, TeleportMode},
     particles::ClothParticles,
     sampling::{SampledMotion, SampledPoses, excess},
-    stages::{ClothStages, for_each_awake},
+    stages::{ClothStages, run_stage},
     step::ClothStep,
 };
 
@@ -228,9 +229,9 @@ pub fn prepare_frames(
 
 /// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
 /// target.
-pub fn advance_frames(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    let substep = step.in_progress();
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.solve(|cloth| cloth.advance(&substep));
-    });
+pub fn advance_frames(
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    run_stage(ADVANCE, &step, &colliders, &mut cloths);
 }

@@ -10,6 +10,7 @@ use bevy_ecs::{
 };
 use tailorbird_solver::{
     crew::{Crew, Desk},
+    step as solver_step,
     wall_clock::WallClock,
 };
 
@@ -73,10 +74,8 @@ pub(crate) fn simulate_cloths(
         cloth.particles.0.begin_step();
         wind.blow(&step, crew, cloth);
         let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
-        for index in 0..count {
-            let substep = step.nth_of(index, count, crew);
-            cloth.solve(|cloth| cloth.substep(&substep, &colliders.list));
-        }
+        let nth = |index| step.nth_of(index, count, crew);
+        cloth.solve(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
         cloth.guard(&commands);
         cloth.settle(&step, &colliders);
         cloth.recompute_normals(step.level(), crew);

@@ -1,13 +1,13 @@
 //! The stages of a step, for one cloth at a time.
 
 use bevy_ecs::{prelude::*, query::QueryData};
-use tailorbird_solver as solver;
+use tailorbird_solver::{self as solver, step::Stage};
 
 use crate::{
     attachment::AttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
-    collider::ClothLayers,
+    collider::{ClothColliders, ClothLayers},
     error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,
@@ -62,6 +62,19 @@ impl ClothStagesItem<'_, '_> {
             particles: &mut self.particles.0,
         })
     }
+}
+
+/// Runs a stage of the substep in progress for all cloths that are awake.
+pub(crate) fn run_stage(
+    stage: Stage,
+    step: &ClothStep,
+    colliders: &ClothColliders,
+    cloths: &mut Query<ClothStages, With<Cloth>>,
+) {
+    let substep = step.in_progress();
+    for_each_awake(step, cloths, &|mut item| {
+        item.solve(|cloth| (stage.run)(&substep, &colliders.list, cloth));
+    });
 }
 
 /// Calls `f` for each cloth, on several threads where [`ClothStep::parallel`] says that it pays. Each call has the cloth for itself,

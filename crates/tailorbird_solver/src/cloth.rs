@@ -2,14 +2,12 @@
 
 use crate::{
     coefficients::{Coefficients, Method},
-    contact::{Colliders, Layers},
+    contact::colliders::Layers,
     frame::Frame,
     holds::Holds,
     limits::MotionLimits,
     particles::Particles,
     reaction::PinForces,
-    solve,
-    substep::Substep,
     tethers::Tethers,
     topology::Topology,
 };
@@ -36,41 +34,4 @@ pub struct Cloth<'a> {
     pub frame: &'a mut Frame,
     /// Its particles.
     pub particles: &'a mut Particles,
-}
-
-/// A stage of a substep.
-pub type Stage = fn(&Substep, &Colliders, &mut Cloth);
-
-/// The stages of a substep, in their order.
-pub const STAGES: [(&str, Stage); 6] = [
-    ("advance", |substep, _, cloth| cloth.advance(substep)),
-    ("integrate", |substep, _, cloth| {
-        solve::integrate(substep, cloth);
-    }),
-    ("find contacts", |substep, colliders, cloth| {
-        colliders.approach(substep, cloth);
-    }),
-    ("solve", |substep, _, cloth| solve::solve(substep, cloth)),
-    ("collide", |substep, colliders, cloth| {
-        colliders.collide_all(substep, cloth);
-    }),
-    ("calm", |substep, _, cloth| solve::calm(substep, cloth)),
-];
-
-impl Cloth<'_> {
-    /// All stages of a substep.
-    pub fn substep(&mut self, substep: &Substep, colliders: &Colliders) {
-        for (_, stage) in STAGES {
-            stage(substep, colliders, self);
-        }
-    }
-
-    /// Moves the frame on by one substep, and with it what is held by others.
-    pub fn advance(&mut self, substep: &Substep) {
-        self.frame.advance(substep, self.particles);
-        if let Some(limits) = self.limits {
-            limits.advance(substep, self.particles);
-        }
-        self.holds.advance(substep, self.frame, self.particles);
-    }
 }

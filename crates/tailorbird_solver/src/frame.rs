@@ -1,13 +1,7 @@
 //! The rigid frame that particles live in, and its motion during a step.
 
-use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_reflect::prelude::*;
-
-use crate::{
-    kernels::rigid,
-    particles::{Input, Particles, State},
-    substep::Substep,
-};
 
 /// The rigid frame that particles live in, and its path in a step.
 #[derive(Clone, Copy, Debug, Default, Reflect)]
@@ -182,66 +176,5 @@ impl Frame {
     /// Whether the frame moves during this step.
     pub fn is_moving(&self) -> bool {
         self.start != self.end
-    }
-
-    /// Moves on by one substep.
-    pub fn advance(&mut self, substep: &Substep, particles: &mut Particles) {
-        if !self.is_moving() {
-            self.taken = None;
-            particles.hold_still();
-            return;
-        }
-        let (_, fraction) = substep.fractions();
-        let way = Vec3::from(self.end.translation - self.start.translation);
-        if substep.index == 0 {
-            let seconds = substep.seconds * substep.count as f32;
-            (particles.state.effort).carried([self.start, self.end], seconds);
-        }
-        let (offset, to) = if substep.left() == 1 {
-            (way, self.end)
-        } else {
-            let offset = fraction * way;
-            let place = Vec3::from(self.start.translation) + offset;
-            let rotation = self.start.rotation.slerp(self.end.rotation, fraction);
-            (offset, Isometry3d::new(place, rotation))
-        };
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    lost_displacement,
-                    ..
-                },
-            input:
-                Input {
-                    acceleration,
-                    inv_mass,
-                    ..
-                },
-            ..
-        } = particles;
-        let from = (self.current.rotation, self.offset);
-        (self.current, self.offset) = (to, offset);
-        let inverse: Quat = to.rotation.inverse();
-        let shift = inverse * (from.1 - offset);
-        let turn = inverse * from.0;
-        let rotation = Mat3::from_quat(turn);
-        rigid::rotate(rotation, acceleration);
-        let (rotation, shift) = if self.felt.is_all() {
-            (rotation, shift)
-        } else {
-            let turn = Quat::IDENTITY.slerp(turn, self.felt.angular);
-            let shift = self.felt.linear * shift;
-            let motion = Isometry3d::new(shift, turn);
-            self.taken = Some(Taken { from, motion });
-            (Mat3::from_quat(turn), shift)
-        };
-        rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
-        rigid::rotate(rotation, lost_displacement);
-        if self.felt.spin != Vec3::ZERO {
-            let turned = inverse * self.felt.spin * substep.seconds;
-            rigid::fling(turned, inv_mass, position);
-        }
     }
 }

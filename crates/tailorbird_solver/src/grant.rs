@@ -75,7 +75,7 @@ pub struct Grant {
     /// Whether a demand stands, or a load pulls.
     trial: Trial,
     /// What the strain of the edges of particles says of warp and weft; scratch.
-    around: [Vec<Around>; 2],
+    around: [Vec<Neighborhood>; 2],
     /// The strain that is asked for around each particle, and not more than there is [-]; scratch.
     asked: Vec<[f32; 2]>,
 }
@@ -83,7 +83,7 @@ pub struct Grant {
 /// Normal equations for the strains (u, v) along warp and weft of edges whose strain is c u + (1 − c) v, c being the square of the cosine of their
 /// angle to the warp.
 #[derive(Clone, Copy, Debug, Default)]
-struct Around {
+struct Neighborhood {
     /// Σ c², Σ c (1 − c), Σ (1 − c)².
     matrix: [f32; 3],
     /// Σ c ε, Σ (1 − c) ε.
@@ -92,7 +92,7 @@ struct Around {
     count: f32,
 }
 
-impl Around {
+impl Neighborhood {
     fn add(&mut self, c: f32, strain: f32) {
         let s = 1.0 - c;
         self.matrix[0] += c * c;
@@ -250,7 +250,7 @@ impl Grant {
     fn measure(&mut self, threads: Threads, position: &Points) {
         let [around, next] = &mut self.around;
         around.clear();
-        around.resize(threads.particles(), Around::default());
+        around.resize(threads.particles(), Neighborhood::default());
         threads.each_edge(|ends, rest_length, c| {
             let [a, b] = ends.map(|i| position.get(i as usize));
             let strain = (a.distance(b) / rest_length - 1.0).min(2.0 * MOST);
@@ -266,11 +266,11 @@ impl Grant {
                 next[b].add_part(&around[a], 1.0);
             });
             for (mean, sum) in around.iter_mut().zip(&*next) {
-                *mean = Around::default();
+                *mean = Neighborhood::default();
                 mean.add_part(sum, 1.0 / sum.count.max(1.0));
             }
             if round == 0 {
-                self.asked.extend(around.iter().map(Around::strain));
+                self.asked.extend(around.iter().map(Neighborhood::strain));
             }
         }
         for (asked, around) in self.asked.iter_mut().zip(around) {

@@ -4,11 +4,10 @@ use bevy_math::Vec3;
 
 use crate::{
     frame::Frame,
-    kernels::spring,
+    kernels::spring::{self, alpha_tilde},
     memory::heap,
     particles::Particles,
     pose::{Map, Pose},
-    solve::alpha_tilde,
     substep::Substep,
     topology::order::ParticleOrder,
 };

@@ -48,6 +48,8 @@ pub mod shape;
 #[doc(hidden)]
 pub mod solve;
 #[doc(hidden)]
+pub mod step;
+#[doc(hidden)]
 pub mod stillness;
 #[doc(hidden)]
 pub mod substep;

@@ -3,7 +3,10 @@
 use bevy_math::Vec3;
 
 use crate::{
-    contact::{ColliderId, near::Around, sight::Sight},
+    contact::{
+        around::{Around, Sight},
+        colliders::ColliderId,
+    },
     effort::Effort,
     grant::Grant,
     kernels::contact::{Contacts, Touch},

@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::contact::Layers;
+use tailorbird_solver::contact::colliders::Layers;
 
 /// Which colliders a cloth meets, and which cloths a collider: two interact where each one's memberships share a bit with
 /// the other's filters. Optional on both; whatever has none meets everything that wants to meet it.

@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::contact::{Body, ColliderId, Colliders, MovingCollider};
+use tailorbird_solver::contact::colliders::{Body, ColliderId, Colliders, MovingCollider};
 
 use super::{
     ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,

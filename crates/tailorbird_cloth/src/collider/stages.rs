@@ -1,12 +1,12 @@
 //! The stages that keep particles out of colliders.
 
 use bevy_ecs::prelude::*;
-use tailorbird_solver::{contact::solid::Kind, kernels::contact::Phase};
+use tailorbird_solver::{contact::solid::Kind, kernels::contact::Phase, step::APPROACH};
 
 use super::ClothColliders;
 use crate::{
     cloth::Cloth,
-    stages::{ClothStages, for_each_awake},
+    stages::{ClothStages, for_each_awake, run_stage},
     step::ClothStep,
 };
 
@@ -15,14 +15,10 @@ use crate::{
 /// For [`ClothSolver::Chains`] alone, which then moves those particles along the surface, and bodies with them that cloth
 /// pushes.
 pub fn find_contacts(
-    step: Res<ClothStep>,
-    colliders: Res<ClothColliders>,
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    let substep = step.in_progress();
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.solve(|cloth| colliders.list.approach(&substep, cloth));
-    });
+    run_stage(APPROACH, &step, &colliders, &mut cloths);
 }
 
 macro_rules! collide_systems {
@@ -37,7 +33,7 @@ macro_rules! collide_systems {
                 let substep = step.in_progress();
                 for_each_awake(&step, &mut cloths, &|mut cloth| {
                     cloth.solve(|cloth| {
-                        (colliders.list).collide(Phase::Final, Some(Kind::$kind), &substep, cloth);
+                        (colliders.list).collide(Phase::Final, Some(&[Kind::$kind]), &substep, cloth);
                     });
                 });
             }

@@ -50,15 +50,20 @@
 //!
 //! [`ClothParticles::stretch`] tells mean, 99 % quantile and largest stretch of the edges; `ClothDiagnosticsPlugin` of `tailorbird` keeps
 //! them. The method and its limits are explained
-//! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_cloth/src/solver/kernels/README.md).
+//! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_solver/src/kernels/README.md).
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{coefficients::Method, solve, topology::Topology};
+use tailorbird_solver::{
+    coefficients::Method,
+    step::{CALM, INTEGRATE, SOLVE},
+    topology::Topology,
+};
 
 use crate::{
     cloth::Cloth,
-    stages::{ClothStages, for_each_awake},
+    collider::ClothColliders,
+    stages::{ClothStages, run_stage},
     step::ClothStep,
 };
 
@@ -122,28 +127,28 @@ impl ClothSolver {
 }
 
 /// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
-pub fn verlet_step(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    let substep = step.in_progress();
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.solve(|cloth| solve::integrate(&substep, cloth));
-    });
+pub fn verlet_step(
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    run_stage(INTEGRATE, &step, &colliders, &mut cloths);
 }
 
 /// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
 ///
 /// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
 /// relaxation, the others as XPBD.
-pub fn solve_constraints(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    let substep = step.in_progress();
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.solve(|cloth| solve::solve(&substep, cloth));
-    });
+pub fn solve_constraints(
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    run_stage(SOLVE, &step, &colliders, &mut cloths);
 }
 
 /// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
-pub fn calm_knots(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    let substep = step.in_progress();
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.solve(|cloth| solve::calm(&substep, cloth));
-    });
+pub fn calm_knots(
+    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
+    mut cloths: Query<ClothStages, With<Cloth>>,
+) {
+    run_stage(CALM, &step, &colliders, &mut cloths);
 }

@@ -22,8 +22,8 @@
 
 use bevy_math::{Isometry3d, Quat, Vec3};
 
-use super::{Body, ColliderId, Colliders};
 use crate::{
+    contact::colliders::{Body, ColliderId, Colliders},
     frame::Frame,
     kernels::solid::{Contact, Motion},
     points::Points,
@@ -243,7 +243,7 @@ impl Struck<'_> {
 
     /// How it moves in the cloth's frame.
     pub fn motion(&self, frame: &Frame) -> Motion {
-        super::narrow::motion(self.way(frame), self.friction)
+        Motion::new(self.way(frame), self.friction)
     }
 
     /// Where a particle is from the body's centre of mass \[m\], given where it was in the world at the start of the substep.

@@ -5,13 +5,13 @@ use std::{mem, ops::Range};
 use bevy_math::Vec3;
 
 use super::{
-    Colliders, MovingCollider,
+    around::Around,
     bodies::{Coupling, Proxy, Pull, Struck},
-    combined_friction,
-    near::{Around, LEAVING},
+    near::LEAVING,
 };
 use crate::{
     cloth::Cloth,
+    contact::colliders::{Colliders, MovingCollider, combined_friction},
     kernels::contact::Phase,
     particles::{Input, Particles, Scratch, State},
     points::Points,

@@ -2,17 +2,17 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bevy_math::{Isometry3d, Mat3, Vec3};
+use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
 
 use super::{
-    MovingCollider, combined_friction,
-    near::Around,
-    sight::{Sight, look},
+    around::{Around, Sight},
+    sight::look,
     solid::Solid,
 };
 use crate::{
     cloth::Cloth,
+    contact::colliders::{MovingCollider, combined_friction},
     frame::shortest,
     kernels::{
         ball::{Ball, Ground},
@@ -130,22 +130,6 @@ fn touching<'a>(
     }
 }
 
-/// How a solid goes from one place in the frame of the particles to another.
-pub fn motion([from, to]: [Isometry3d; 2], friction: f32) -> Motion {
-    let axes = Mat3::from_quat(to.rotation);
-    Motion {
-        from: from.translation.into(),
-        to: to.translation.into(),
-        axes,
-        turn: if from.rotation == to.rotation {
-            Mat3::IDENTITY
-        } else {
-            axes * Mat3::from_quat(from.rotation).transpose()
-        },
-        friction,
-    }
-}
-
 /// How something turns on a way: axis times angle \[rad\].
 fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     if from.rotation == to.rotation {
@@ -181,7 +165,7 @@ impl MovingCollider {
         }
         let margin = self.margin + material.margin;
         let friction = combined_friction(self.friction, material.friction);
-        let motion = motion(way, friction);
+        let motion = Motion::new(way, friction);
         let turn = turn(way);
         // What motion constraints pull back into a collider did not go there by itself either.
         let overlaps = AtomicBool::new(false);

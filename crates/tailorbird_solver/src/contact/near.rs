@@ -5,13 +5,17 @@ use std::{hash::Hash, ops::Range};
 use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
 
-use super::{
-    ColliderId, Colliders, Layers, MovingCollider,
-    bodies::{Bodies, Coupling},
-    sight::Sight,
-    solid::{Solid, swept},
+use super::solid::{Solid, swept};
+use crate::{
+    bounds::Bounds,
+    contact::{
+        around::Around,
+        colliders::{Colliders, Layers, MovingCollider},
+    },
+    frame::Frame,
+    kernels::range::bounds,
+    points::Points,
 };
-use crate::{bounds::Bounds, frame::Frame, kernels::range::bounds, points::Points};
 
 /// Particles of a block.
 const BLOCK: usize = 128;
@@ -22,29 +26,6 @@ const ROOM: f32 = 0.5;
 /// Room around a collider for contacts that have just ended \[m\].
 pub const LEAVING: f32 = 0.01;
 
-/// What a cloth knows of the colliders around it; scratch of a step.
-#[derive(Clone, Debug, Default)]
-pub struct Around {
-    /// Those that are near, as places in the list of colliders.
-    pub near: Vec<usize>,
-    /// Where the list holds, in the world \[m\].
-    holds: Option<(Vec3, Vec3)>,
-    /// The stage that the boxes of blocks were found in: which substep, and whether its constraints are solved.
-    stage: Option<(u32, bool)>,
-    /// The boxes of the blocks of particles, now and at the start of the substep, in the cloth's frame \[m\].
-    blocks: Vec<(Vec3, Vec3)>,
-    /// The bodies as this cloth has moved them.
-    pub bodies: Bodies,
-    /// The particles that carry parts of bodies; those of each collider side by side.
-    pub couplings: Vec<Coupling>,
-    /// What particles see of meshes: those of the state, while colliders are looked at.
-    pub sights: Vec<Sight>,
-    /// Particles that touch something.
-    pub found: Vec<usize>,
-    /// Colliders that go through the cloth: those of the state, while colliders are looked at.
-    pub passing: Vec<ColliderId>,
-}
-
 fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
     (a.0.min(b.0), a.1.max(b.1))
 }
@@ -54,21 +35,6 @@ fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
 }
 
 impl Around {
-    /// Forgets what held in the step before.
-    pub fn begin_step(&mut self) {
-        self.holds = None;
-        self.stage = None;
-        self.bodies.clear();
-    }
-
-    /// What it takes on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        crate::memory::heap(&self.near)
-            + crate::memory::heap(&self.blocks)
-            + crate::memory::heap(&self.found)
-            + crate::memory::heap(&self.couplings)
-    }
-
     /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides their
     /// own.
     pub fn look(

@@ -1,46 +1,18 @@
 //! What the particles of a cloth see of triangle meshes.
 
-use super::{ColliderId, MovingCollider, near::Around, solid::Solid, surface::Surface};
+use super::{around::Around, solid::Solid, surface::Surface};
 use crate::{
+    contact::{
+        around::Sight,
+        colliders::{ColliderId, MovingCollider},
+    },
     kernels::{
         patches::{Patches, outdated},
         solid::Motion,
     },
     particles::Particles,
-    points::Points,
     substep::Substep,
 };
-
-/// What the particles of a cloth see of a mesh.
-#[derive(Clone, Debug, Default)]
-pub struct Sight {
-    pub collider: Option<(ColliderId, u64)>,
-    pub patches: Patches,
-    /// Particles whose plane holds no longer; scratch.
-    outdated: Vec<usize>,
-}
-
-impl Sight {
-    /// Whether it is of this collider.
-    pub fn is_of(&self, collider: &MovingCollider) -> bool {
-        self.collider.is_some() && self.collider == collider.surface_id()
-    }
-
-    /// What it takes on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let Patches {
-            normal,
-            offset,
-            place,
-            holds,
-        } = &self.patches;
-        let points = [normal, place].map(Points::memory_bytes);
-        points.iter().sum::<usize>()
-            + offset.memory_bytes()
-            + holds.memory_bytes()
-            + crate::memory::heap(&self.outdated)
-    }
-}
 
 static NOTHING: std::sync::LazyLock<Patches> = std::sync::LazyLock::new(Patches::default);
 
@@ -50,6 +22,13 @@ impl Around {
         let id = collider.surface_id();
         let sight = self.sights.iter().find(|sight| sight.collider == id);
         sight.map_or(&NOTHING, |sight| &sight.patches)
+    }
+}
+
+impl Sight {
+    /// Whether it is of this collider.
+    pub fn is_of(&self, collider: &MovingCollider) -> bool {
+        self.collider.is_some() && self.collider == collider.surface_id()
     }
 }
 

@@ -36,6 +36,17 @@ pub enum Kind {
     Other,
 }
 
+impl Kind {
+    /// All, in the order in which they are solved.
+    pub const ALL: [Self; 5] = [
+        Self::Sphere,
+        Self::HalfSpace,
+        Self::Capsule,
+        Self::Cuboid,
+        Self::Other,
+    ];
+}
+
 /// Heights above the x-z plane in a grid around the origin, columns along +x, rows along +z.
 #[derive(Clone, Debug)]
 pub struct Field {

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use bevy_math::{Mat3, Vec3};
+use bevy_math::{Isometry3d, Mat3, Vec3};
 use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
@@ -35,6 +35,24 @@ pub struct Motion {
     pub turn: Mat3,
     /// Coulomb friction [-].
     pub friction: f32,
+}
+
+impl Motion {
+    /// How a solid goes from one place in the frame of the particles to another.
+    pub fn new([from, to]: [Isometry3d; 2], friction: f32) -> Self {
+        let axes = Mat3::from_quat(to.rotation);
+        Self {
+            from: from.translation.into(),
+            to: to.translation.into(),
+            axes,
+            turn: if from.rotation == to.rotation {
+                Mat3::IDENTITY
+            } else {
+                axes * Mat3::from_quat(from.rotation).transpose()
+            },
+            friction,
+        }
+    }
 }
 
 /// How far points are from a solid.

@@ -19,6 +19,12 @@ pub fn left(inv_mass: f32, alpha_tilde: f32) -> f32 {
     }
 }
 
+/// α̃ = α/h² [1/kg] of a compliance [m/N].
+pub fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
+    // What is not finite would turn into NaN in the product with a multiplier of 0.
+    (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

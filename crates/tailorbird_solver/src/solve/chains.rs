@@ -13,6 +13,7 @@ use crate::{
         mesh,
         rigid_motion::RigidMotion,
         shear::{self, Shear},
+        spring::alpha_tilde,
         tether,
         verlet::Verlet,
         viscosity::{self, Beside, Motion},
@@ -69,7 +70,7 @@ impl<'a> Pass<'a> {
 impl Pass<'_> {
     /// α̃ = α/h² [1/kg].
     pub fn alpha_tilde(&self, compliance: f32) -> f32 {
-        super::alpha_tilde(compliance, self.seconds)
+        alpha_tilde(compliance, self.seconds)
     }
 
     /// The lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal density [kg/m²].

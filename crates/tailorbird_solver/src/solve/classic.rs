@@ -1,9 +1,8 @@
 //! The classic solver: springs one by one.
 
-use super::alpha_tilde;
 use crate::{
     coefficients::Coefficients,
-    kernels::distance,
+    kernels::{distance, spring::alpha_tilde},
     particles::{Input, Particles, Scratch, State},
     substep::Substep,
     topology::{Topology, constraints::ConstraintFamily},

@@ -112,9 +112,3 @@ pub fn calm(substep: &Substep, cloth: &mut Cloth) {
         cloth.particles.disturb(cloth.topology);
     }
 }
-
-/// α̃ = α/h² [1/kg] of a compliance [m/N].
-pub fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
-    // What is not finite would turn into NaN in the product with a multiplier of 0.
-    (compliance.max(0.0) / (seconds * seconds)).min(f32::MAX)
-}

@@ -1,0 +1,143 @@
+//! A step: a loop over substeps, and the table of the stages of each.
+
+use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+
+use crate::{
+    cloth::Cloth,
+    contact::colliders::Colliders,
+    frame::{Frame, Taken},
+    kernels::rigid,
+    particles::{Input, Particles, State},
+    solve,
+    substep::Substep,
+};
+
+/// A stage of a substep.
+pub struct Stage {
+    /// What it is called.
+    pub name: &'static str,
+    /// What it does to a cloth.
+    pub run: fn(&Substep, &Colliders, &mut Cloth),
+}
+
+/// The stages of a substep, in their order.
+pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, CALM];
+
+/// Moves the frame, and with it what is held by others.
+pub const ADVANCE: Stage = Stage {
+    name: "advance",
+    run: |substep, _, cloth| advance(substep, cloth),
+};
+
+/// Moves particles by inertia, gravity, wind and forces.
+pub const INTEGRATE: Stage = Stage {
+    name: "integrate",
+    run: |substep, _, cloth| solve::integrate(substep, cloth),
+};
+
+/// Pushes particles out of colliders, and notes what they touch.
+pub const APPROACH: Stage = Stage {
+    name: "approach",
+    run: |substep, colliders, cloth| colliders.approach(substep, cloth),
+};
+
+/// Holds the constraints.
+pub const SOLVE: Stage = Stage {
+    name: "solve",
+    run: |substep, _, cloth| solve::solve(substep, cloth),
+};
+
+/// Keeps particles out of colliders, with friction.
+pub const COLLIDE: Stage = Stage {
+    name: "collide",
+    run: |substep, colliders, cloth| colliders.collide_all(substep, cloth),
+};
+
+/// Damps what is tangled, at the end of the last substep, and looks at what the cloth is asked for.
+pub const CALM: Stage = Stage {
+    name: "calm",
+    run: |substep, _, cloth| solve::calm(substep, cloth),
+};
+
+/// Takes a cloth through all substeps of a step; `nth` tells what the substep of this index is told.
+pub fn step<'a>(
+    count: u32,
+    nth: impl Fn(u32) -> Substep<'a>,
+    colliders: &Colliders,
+    cloth: &mut Cloth,
+) {
+    for index in 0..count {
+        let substep = nth(index);
+        for stage in STAGES {
+            (stage.run)(&substep, colliders, cloth);
+        }
+    }
+}
+
+fn advance(substep: &Substep, cloth: &mut Cloth) {
+    advance_frame(cloth.frame, substep, cloth.particles);
+    if let Some(limits) = cloth.limits {
+        limits.advance(substep, cloth.particles);
+    }
+    cloth.holds.advance(substep, cloth.frame, cloth.particles);
+}
+
+/// Moves a frame on by one substep, and expresses the free particles in the moved frame.
+fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles) {
+    if !frame.is_moving() {
+        frame.taken = None;
+        particles.hold_still();
+        return;
+    }
+    let (_, fraction) = substep.fractions();
+    let way = Vec3::from(frame.end.translation - frame.start.translation);
+    if substep.index == 0 {
+        let seconds = substep.seconds * substep.count as f32;
+        (particles.state.effort).carried([frame.start, frame.end], seconds);
+    }
+    let (offset, to) = if substep.left() == 1 {
+        (way, frame.end)
+    } else {
+        let offset = fraction * way;
+        let place = Vec3::from(frame.start.translation) + offset;
+        let rotation = frame.start.rotation.slerp(frame.end.rotation, fraction);
+        (offset, Isometry3d::new(place, rotation))
+    };
+    let Particles {
+        state:
+            State {
+                position,
+                previous_position,
+                lost_displacement,
+                ..
+            },
+        input: Input {
+            acceleration,
+            inv_mass,
+            ..
+        },
+        ..
+    } = particles;
+    let from = (frame.current.rotation, frame.offset);
+    (frame.current, frame.offset) = (to, offset);
+    let inverse: Quat = to.rotation.inverse();
+    let shift = inverse * (from.1 - offset);
+    let turn = inverse * from.0;
+    let rotation = Mat3::from_quat(turn);
+    rigid::rotate(rotation, acceleration);
+    let (rotation, shift) = if frame.felt.is_all() {
+        (rotation, shift)
+    } else {
+        let turn = Quat::IDENTITY.slerp(turn, frame.felt.angular);
+        let shift = frame.felt.linear * shift;
+        let motion = Isometry3d::new(shift, turn);
+        frame.taken = Some(Taken { from, motion });
+        (Mat3::from_quat(turn), shift)
+    };
+    rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
+    rigid::rotate(rotation, lost_displacement);
+    if frame.felt.spin != Vec3::ZERO {
+        let turned = inverse * frame.felt.spin * substep.seconds;
+        rigid::fling(turned, inv_mass, position);
+    }
+}
