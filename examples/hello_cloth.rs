@@ -1,6 +1,6 @@
 //! A curtain that hangs by its upper corners, and a ball in front of it that pushes it aside.
 //!
-//! Arrows, PageUp, PageDown and Shift: move the ball. Drag the curtain with the left mouse button, pin what is held with P.
+//! Arrows, Page Up, Page Down and Shift: move the ball. Drag the curtain with the left mouse button, pin what is held with P.
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;

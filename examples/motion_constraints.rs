@@ -47,10 +47,10 @@ fn skirt() -> Cloth {
 }
 
 /// The waist is held, as by pins; the hem gets 15 cm away from its target, and 4 cm towards the legs.
-fn limits() -> ClothMotionConstraints {
-    let (columns, rows, _) = SKIRT;
-    let down = (0..columns * rows).map(|i| (i / columns) as f32 / (rows - 1) as f32);
-    let behind = PerParticle::weighted(down.clone(), 0.04);
+fn limits(skirt: &Cloth) -> ClothMotionConstraints {
+    let rest = skirt.rest_positions().into_iter();
+    let down: Vec<_> = rest.map(|place| -place.y / SKIRT.2).collect();
+    let behind = PerParticle::weighted(down.iter().copied(), 0.04);
     ClothMotionConstraints::within(PerParticle::weighted(down, 0.15)).with_backstop(behind, 0.4)
 }
 
@@ -61,9 +61,10 @@ fn setup(
 ) {
     let wood = MeshMaterial3d(materials.add(Color::srgb(0.74, 0.64, 0.50)));
     let figure = commands.spawn(Figure).id();
+    let skirt = skirt();
     commands.spawn((
-        skirt(),
-        limits(),
+        limits(&skirt),
+        skirt,
         ClothMotionTargets::default(),
         ClothMaterial::cotton(),
         MeshMaterial3d(materials.add(Color::srgb(0.10, 0.42, 0.42))),
