@@ -96,7 +96,7 @@ fn setup(
             brightness: 400.0,
             ..default()
         },
-        Transform::from_xyz(2.0, 1.7, 3.2).looking_at(Vec3::new(0.0, 0.95, 0.2), Vec3::Y),
+        Transform::from_xyz(2.1, 1.8, 3.7).looking_at(Vec3::new(0.0, 0.8, 0.3), Vec3::Y),
     ));
 }
 
