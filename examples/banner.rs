@@ -1,12 +1,130 @@
-//! A banner on a boat that sails in circles. Drag it with the left mouse button, turn the camera with the right one; the arrow
-//! keys move the ball.
+//! A banner on a boat that pitches and rolls in a gusty wind. It is a child of the boat, held by nine rings: pins move with the
+//! entity, and what is free keeps its place in the world until it is pulled along.
+//!
+//! Space: a calm, or the wind again. Drag the banner with the left mouse button.
 
-mod common;
+use std::f32::consts::FRAC_PI_2;
 
-use std::process::ExitCode;
+use bevy::{app::RunFixedMainLoopSystems, prelude::*};
+use tailorbird::prelude::*;
 
-use common::scenes::SceneKind;
+#[derive(Component)]
+#[require(Transform, Visibility)]
+struct Boat;
 
-fn main() -> ExitCode {
-    common::play("banner", SceneKind::Banner)
+fn main() {
+    App::new()
+        .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
+        .insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)))
+        .insert_resource(Wind {
+            gusts: Gusts {
+                strength: 0.5,
+                period: 2.5,
+            },
+            turbulence: Turbulence {
+                speed: 0.7,
+                scale: 0.9,
+                ..default()
+            },
+            ..Wind::steady(WIND)
+        })
+        .add_systems(Startup, setup)
+        .add_systems(Update, change_wind)
+        .add_systems(FixedUpdate, sail)
+        .add_systems(
+            RunFixedMainLoop,
+            sail.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+        )
+        .run();
+}
+
+/// Mean velocity of the air [m/s].
+const WIND: Vec3 = Vec3::new(0.5, 0.0, 1.2);
+
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let wood = MeshMaterial3d(materials.add(Color::srgb(0.40, 0.26, 0.15)));
+    let boat = commands.spawn(Boat).id();
+    let hull = ConicalFrustum {
+        radius_top: 1.0,
+        radius_bottom: 0.6,
+        height: 0.4,
+    };
+    commands.spawn((
+        Mesh3d(meshes.add(hull)),
+        wood.clone(),
+        Transform::from_xyz(0.0, 0.1, 0.0).with_scale(Vec3::new(1.7, 1.0, 0.6)),
+        ChildOf(boat),
+    ));
+    let mast = (0.035, 2.3, Transform::from_xyz(0.0, 1.3, -0.06));
+    let across = Quat::from_rotation_z(FRAC_PI_2);
+    let yard = (
+        0.022,
+        1.3,
+        Transform::from_xyz(0.0, 2.32, 0.0).with_rotation(across),
+    );
+    for (radius, length, place) in [mast, yard] {
+        commands.spawn((
+            ClothCollider::capsule(radius, length),
+            Mesh3d(meshes.add(Capsule3d::new(radius, length))),
+            wood.clone(),
+            place,
+            ChildOf(boat),
+        ));
+    }
+    let columns = 41;
+    commands.spawn((
+        Cloth::grid(Vec2::new(1.2, 1.5), UVec2::new(columns, 51)).with_origin(Vec2::new(0.5, 0.0)),
+        ClothPins::particles((0..=8).map(|ring| ring * (columns - 1) / 8)),
+        ClothMaterial::cotton(),
+        ClothLook::new(Fabric::Cotton).with_dye(Color::srgb(0.75, 0.12, 0.08)),
+        Transform::from_xyz(0.0, 2.29, 0.03),
+        ChildOf(boat),
+    ));
+
+    let sea = StandardMaterial {
+        base_color: Color::srgb(0.10, 0.24, 0.30),
+        perceptual_roughness: 0.25,
+        ..default()
+    };
+    commands.spawn((
+        Mesh3d(meshes.add(Plane3d::default().mesh().size(200.0, 200.0))),
+        MeshMaterial3d(materials.add(sea)),
+    ));
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    commands.spawn((
+        sun,
+        Transform::from_xyz(-2.0, 3.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    commands.spawn((
+        Camera3d::default(),
+        AmbientLight {
+            brightness: 400.0,
+            ..default()
+        },
+        Transform::from_xyz(1.6, 1.7, 4.0).looking_at(1.15 * Vec3::Y, Vec3::Y),
+    ));
+}
+
+/// Runs in each step, where cloth sees it, and once a frame: cloth is drawn between its last two steps, and so is the boat.
+fn sail(time: Res<Time>, step: Res<Time<Fixed>>, mut boat: Single<&mut Transform, With<Boat>>) {
+    let is_step = time.elapsed() == step.elapsed();
+    let length = step.timestep().as_secs_f32();
+    let late = if is_step { 0.0 } else { length };
+    let t = time.elapsed_secs() - late;
+    let roll = Quat::from_rotation_x(0.18 * (1.3 * t).sin());
+    let pitch = Quat::from_rotation_z(0.12 * (1.9 * t).sin());
+    **boat = Transform::from_xyz(0.0, 0.08 * (1.7 * t).sin(), 0.0).with_rotation(roll * pitch);
+}
+
+fn change_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<Wind>) {
+    if keys.just_pressed(KeyCode::Space) {
+        wind.velocity = WIND - wind.velocity;
+    }
 }

@@ -1,53 +1,64 @@
-//! A flag in a gusty wind. Drag it with the left mouse button, turn the camera with the right one; the keys W and S
-//! make the wind stronger and weaker, A and D turn it.
-
-mod common;
-
-use std::process::ExitCode;
+//! A flag of silk on a pole in a gusty wind.
+//!
+//! W and S: a stronger and a weaker wind. A and D: turn it. Drag the flag with the left mouse button.
 
 use bevy::prelude::*;
-use common::{
-    camera::OrbitCamera,
-    graphics::check_driver,
-    scenes::{SceneAssets, SceneKind, spawn_scene},
-    settings::DemoSettings,
-    stage::StagePlugin,
-    window::ExitAfterFrames,
-};
 use tailorbird::prelude::*;
 
-fn main() -> ExitCode {
-    if let Err(message) = check_driver() {
-        eprintln!("flag: {message}");
-        return ExitCode::FAILURE;
-    }
+fn main() {
     App::new()
-        .add_plugins((
-            DefaultPlugins,
-            ClothPlugins::default(),
-            ClothDragPlugin,
-            StagePlugin::default(),
-            ExitAfterFrames,
-        ))
-        .insert_resource(SceneKind::Flag.wind())
-        .add_systems(Startup, hoist)
-        .add_systems(PostStartup, look)
+        .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
+        .insert_resource(ClearColor(Color::srgb(0.55, 0.70, 0.85)))
+        .insert_resource(Wind {
+            gusts: Gusts {
+                strength: 0.4,
+                period: 3.0,
+            },
+            turbulence: Turbulence {
+                speed: 1.2,
+                scale: 1.5,
+                seed: 1,
+            },
+            ..Wind::steady(Vec3::new(7.0, 0.0, 1.0))
+        })
+        .add_systems(Startup, setup)
         .add_systems(Update, change_wind)
         .run();
-    ExitCode::SUCCESS
 }
 
-/// A flag of silk on a pole.
-fn hoist(mut commands: Commands, mut assets: SceneAssets) {
-    spawn_scene(
-        &mut commands,
-        &DemoSettings::of(SceneKind::Flag),
-        &mut assets,
-    );
-}
-
-fn look(mut camera: Single<&mut OrbitCamera>) {
-    **camera = SceneKind::Flag.view();
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    commands.spawn((
+        Cloth::grid(Vec2::new(1.8, 1.2), UVec2::new(73, 49)),
+        ClothPins::edges([GridEdge::Left]),
+        ClothMaterial::silk(),
+        ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.93, 0.50, 0.10)),
+        Transform::from_xyz(0.03, 2.5, 0.0),
+    ));
+    commands.spawn((
+        Mesh3d(meshes.add(Cylinder::new(0.025, 4.0))),
+        MeshMaterial3d(materials.add(Color::srgb(0.85, 0.85, 0.86))),
+        Transform::from_xyz(0.0, 0.6, 0.0),
+    ));
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    commands.spawn((
+        sun,
+        Transform::from_xyz(-2.0, 4.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    commands.spawn((
+        Camera3d::default(),
+        AmbientLight {
+            brightness: 400.0,
+            ..default()
+        },
+        Transform::from_xyz(1.3, 1.5, 2.4).looking_at(Vec3::new(0.8, 1.85, 0.0), Vec3::Y),
+    ));
 }
 
 fn change_wind(keys: Res<ButtonInput<KeyCode>>, time: Res<Time>, mut wind: ResMut<Wind>) {

@@ -1,4 +1,6 @@
-//! A curtain that hangs by its upper corners, and a ball that the arrow keys push into it. Drag the cloth with the mouse.
+//! A curtain that hangs by its upper corners, and a ball in front of it that pushes it aside.
+//!
+//! Arrows, Page Up, Page Down and Shift: move the ball. Drag the curtain with the left mouse button, pin what is held with P.
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;
@@ -20,21 +22,21 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    // A curtain: 2 m wide, 1.5 m high.
+    // 2 m wide, 1.5 m high, with its middle at the entity's origin.
     commands.spawn((
-        Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
+        Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)).centered(),
         ClothMaterial::cotton(),
         ClothPins::corners(GridCorner::TOP),
-        MeshMaterial3d(materials.add(Color::srgb(0.7, 0.1, 0.1))),
-        Transform::from_xyz(-1.0, 2.0, 0.0),
+        MeshMaterial3d(materials.add(Color::srgb(0.8, 0.1, 0.1))),
+        Transform::from_xyz(0.0, 1.2, 0.0),
     ));
-    // A ball: arrows, PageUp and PageDown move it.
+    // A ball that leans on it: arrows, PageUp and PageDown move it.
     commands.spawn((
         ClothCollider::sphere(0.3),
         SphereControls::default(),
         Mesh3d(meshes.add(Sphere::new(0.3))),
         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.8, 0.8))),
-        Transform::from_xyz(0.0, 0.8, 0.7),
+        Transform::from_xyz(0.2, 0.95, 0.1),
     ));
     commands.spawn((
         DirectionalLight {
@@ -45,6 +47,6 @@ fn setup(
     ));
     commands.spawn((
         Camera3d::default(),
-        Transform::from_xyz(1.2, 1.6, 4.0).looking_at(Vec3::Y, Vec3::Y),
+        Transform::from_xyz(1.2, 1.6, 3.2).looking_at(1.15 * Vec3::Y, Vec3::Y),
     ));
 }

@@ -1,6 +1,6 @@
-//! What the examples share, and the tests with them: scenes, stage, camera, panel, scripts, pictures.
+//! What the demo, the gallery and the tests share: scenes, stage, camera, panel, scripts, pictures.
 
-#![allow(dead_code, reason = "each example and each test uses a part")]
+#![allow(dead_code, reason = "each of them uses a part")]
 
 pub mod actor;
 pub mod apply;
@@ -39,8 +39,6 @@ pub mod thumbnails;
 pub mod touch;
 pub mod window;
 
-use std::process::ExitCode;
-
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use tailorbird::prelude::*;
 
@@ -50,24 +48,4 @@ pub fn cloth_plugins() -> PluginGroupBuilder {
         .set(ClothFabricPlugin::from_folder("textures"))
         .add(ClothDragPlugin)
         .add(SphereControlsPlugin)
-}
-
-/// Opens a window with one scene, without a panel.
-pub fn play(name: &str, scene: scenes::SceneKind) -> ExitCode {
-    if let Err(message) = graphics::check_driver() {
-        eprintln!("{name}: {message}");
-        return ExitCode::FAILURE;
-    }
-    App::new()
-        .add_plugins((
-            DefaultPlugins.set(garment::gltf()),
-            cloth_plugins(),
-            apply::DemoPlugin {
-                settings: settings::DemoSettings::of(scene),
-                ..default()
-            },
-            window::ExitAfterFrames,
-        ))
-        .run();
-    ExitCode::SUCCESS
 }
