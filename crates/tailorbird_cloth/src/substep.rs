@@ -358,7 +358,7 @@ impl<'w> SubstepCloth<'w> {
             to: state.position.get(i),
         };
         let depth = contact.depth.max(0.0);
-        let Path { from, to } = path.resolve_with(normal, depth, most, surface);
+        let Path { from, to } = path.resolve(normal, depth, most, surface);
         state.previous_position.set(i, from);
         state.position.set(i, to);
     }

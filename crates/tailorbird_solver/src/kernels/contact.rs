@@ -28,18 +28,12 @@ impl Path {
     /// Resolves a contact with a surface of unit `normal` that `to` lies `depth` \[m\] below.
     ///
     /// 1. `to` is pushed out along the normal.
-    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by at
-    ///    most `friction` · `depth`: the push is what presses the two together.
+    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by `most` \[m\]
+    ///    at most: friction times what presses the two together.
     /// 3. What is left of motion away from the surface comes from the push alone, so `from` follows: a particle that was
     ///    inside does not pop out with a speed.
     #[inline]
-    pub fn resolve(self, normal: Vec3, depth: f32, friction: f32, surface: Vec3) -> Self {
-        self.resolve_with(normal, depth, friction * depth, surface)
-    }
-
-    /// [`Self::resolve`], where friction takes back no more than `most` \[m\].
-    #[inline]
-    pub fn resolve_with(self, normal: Vec3, depth: f32, most: f32, surface: Vec3) -> Self {
+    pub fn resolve(self, normal: Vec3, depth: f32, most: f32, surface: Vec3) -> Self {
         let mut to = self.to + normal * depth;
         let moved = to - self.from;
         let away = normal.dot(moved);
@@ -268,8 +262,15 @@ impl<S: Simd> Known<'_, S> {
         inside.select(most, depth)
     }
 
-    /// What [`Path::resolve`] does to one, side by side; friction in the final phase alone, with the depth that was noted
-    /// added. Of those that do not touch, the result has no meaning.
+    /// Resolves contacts with surfaces of unit normals that the ends of the paths lie `depth` \[m\] below.
+    ///
+    /// 1. The end is pushed out along the normal.
+    /// 2. In the final phase, the tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back,
+    ///    by at most the coefficient of friction times the depth, with that which was noted added: the push is what presses the two together.
+    /// 3. What is left of motion away from the surface comes from the push alone, so the start follows: a particle that was
+    ///    inside does not pop out with a speed.
+    ///
+    /// Of those that do not touch, the result has no meaning.
     #[inline(always)]
     pub fn resolve(
         self,
