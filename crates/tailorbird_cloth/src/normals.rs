@@ -5,10 +5,10 @@ use bevy_math::{Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
-    crew::Crew,
     kernels::{lanes::SharedPoints, normals, rigid},
     points::Points,
     topology::Topology,
+    workers::Workers,
 };
 
 use crate::{
@@ -93,7 +93,7 @@ pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, Wi
         if cloth.rest.is_asleep() {
             cloth.renew(step.level());
         } else {
-            cloth.recompute_normals(step.level(), Crew::ALONE);
+            cloth.recompute_normals(step.level(), Workers::ALONE);
         }
     });
 }
@@ -115,13 +115,13 @@ impl ClothStagesItem<'_, '_> {
     /// Computes the normals and the box of one that sleeps where it was rebuilt, or is shaded in another way.
     pub(crate) fn renew(&mut self, level: Level) {
         if self.normals.are_stale(self.topology, *self.shading) {
-            self.recompute_normals(level, Crew::ALONE);
+            self.recompute_normals(level, Workers::ALONE);
             self.update_bounds(level);
         }
     }
 
     /// What [`recompute_normals`] does for one cloth.
-    pub(crate) fn recompute_normals(&mut self, level: Level, crew: Crew) {
+    pub(crate) fn recompute_normals(&mut self, level: Level, workers: Workers) {
         let (topology, shading) = (self.topology, *self.shading);
         let position = &self.particles.0.state.position;
         if position.is_empty() {
@@ -149,7 +149,7 @@ impl ClothStagesItem<'_, '_> {
             // The cells of a mesh are cut in its own way.
             (ClothShading::Smooth, Some(lattice), Some(_)) => {
                 let current = SharedPoints::new(current);
-                crew.share(0..lattice.rows as usize, |rows| {
+                workers.share(0..lattice.rows as usize, |rows| {
                     normals::smooth_lattice(level, lattice, position, current, rows);
                 });
             }

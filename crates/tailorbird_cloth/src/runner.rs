@@ -9,9 +9,9 @@ use bevy_ecs::{
     schedule::{NodeId, SystemKey},
 };
 use tailorbird_solver::{
-    crew::{Crew, Desk},
     step as solver_step,
     wall_clock::WallClock,
+    workers::{Queue, Workers},
 };
 
 use crate::{
@@ -70,15 +70,15 @@ pub(crate) fn simulate_cloths(
     commands: ParallelCommands,
 ) {
     let start = WallClock::start();
-    let simulate = |cloth: &mut ClothStagesItem, crew: Crew| {
+    let simulate = |cloth: &mut ClothStagesItem, workers: Workers| {
         cloth.particles.0.begin_step();
-        wind.blow(&step, crew, cloth);
+        wind.blow(&step, workers, cloth);
         let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
-        let nth = |index| step.nth_of(index, count, crew);
+        let nth = |index| step.nth_of(index, count, workers);
         cloth.solve(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
         cloth.guard(&commands);
         cloth.settle(&step, &colliders);
-        cloth.recompute_normals(step.level(), crew);
+        cloth.recompute_normals(step.level(), workers);
         cloth.update_bounds(step.level());
         cloth.rest(&step, &wind, &colliders);
     };
@@ -93,14 +93,14 @@ pub(crate) fn simulate_cloths(
     }
     for_each_awake(&step, &mut cloths, &|mut cloth| {
         if !is_large(&cloth) {
-            simulate(&mut cloth, Crew::ALONE);
+            simulate(&mut cloth, Workers::ALONE);
         }
     });
     if large > 0 {
-        Desk::open(|crew| {
+        Queue::open(|workers| {
             for mut cloth in &mut cloths {
                 if is_large(&cloth) && !cloth.rest.is_asleep() {
-                    simulate(&mut cloth, crew);
+                    simulate(&mut cloth, workers);
                 }
             }
         });

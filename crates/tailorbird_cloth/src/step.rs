@@ -5,7 +5,7 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_time::Time;
 use fearless_simd::Level;
-use tailorbird_solver::{crew::Crew, substep::Substep, topology::Topology};
+use tailorbird_solver::{substep::Substep, topology::Topology, workers::Workers};
 use tracing::error;
 
 use crate::{
@@ -173,7 +173,7 @@ impl ClothStep {
     }
 
     /// The substep `index` of `count`.
-    pub(crate) fn nth_of<'a>(&self, index: u32, count: u32, crew: Crew<'a>) -> Substep<'a> {
+    pub(crate) fn nth_of<'a>(&self, index: u32, count: u32, workers: Workers<'a>) -> Substep<'a> {
         Substep {
             level: self.level.0,
             seconds: self.seconds / count.max(1) as f32,
@@ -182,13 +182,13 @@ impl ClothStep {
             iterations: self.iterations,
             gravity: self.gravity,
             overlap_speed: self.overlap_speed,
-            crew,
+            workers,
         }
     }
 
     /// The substep in progress, of those that all cloths take together.
     pub(crate) fn in_progress(&self) -> Substep<'static> {
-        self.nth_of(self.substep, self.substeps, Crew::ALONE)
+        self.nth_of(self.substep, self.substeps, Workers::ALONE)
     }
 }
 

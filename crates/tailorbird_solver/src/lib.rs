@@ -6,7 +6,7 @@
 //! - the rest shape and what is computed from it once: [`shape`], [`topology`];
 //! - arrays of particles: [`points`], [`numbers`];
 //! - the arithmetic, one file for each equation, which no documentation lists: `kernels`, explained in `kernels/README.md`;
-//! - several threads at one cloth: `crew`.
+//! - several threads at one cloth: `workers`.
 //!
 //! Units are metres, kilograms and seconds.
 
@@ -18,8 +18,6 @@ pub mod cloth;
 pub mod coefficients;
 #[doc(hidden)]
 pub mod contact;
-#[doc(hidden)]
-pub mod crew;
 #[doc(hidden)]
 pub mod effort;
 pub mod error;
@@ -58,6 +56,8 @@ pub mod tethers;
 pub mod topology;
 pub mod wall_clock;
 pub mod wind;
+#[doc(hidden)]
+pub mod workers;
 
 /// Whether this crate was built without optimisation: its kernels are some 200 times as slow as they need be.
 pub const UNOPTIMISED: bool = cfg!(unoptimised);

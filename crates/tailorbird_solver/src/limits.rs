@@ -93,7 +93,7 @@ impl MotionLimits {
         let position = SharedPoints::new(position);
         let previous = SharedPoints::new(previous_position);
         let inv_mass = Shared::new(inv_mass);
-        substep.crew.share(0..len, |range| {
+        substep.workers.share(0..len, |range| {
             limit::hold(substep.level, limits, position, previous, inv_mass, range);
         });
     }

@@ -4,7 +4,7 @@ use bevy_math::Vec3;
 
 use crate::{
     contact::{
-        around::{Around, Sight},
+        cache::{ContactCache, MeshPlanes},
         colliders::ColliderId,
     },
     effort::Effort,
@@ -55,7 +55,7 @@ pub struct State {
     /// The point that stayed where it was when the scale changed last \[m\].
     pub grown_about: Vec3,
     /// What particles see of meshes: also on which side of an open one each is.
-    pub sights: Vec<Sight>,
+    pub planes: Vec<MeshPlanes>,
     /// Colliders that go through the cloth, as they tore it along faster than it can follow.
     pub passing: Vec<ColliderId>,
     /// The largest force on bodies that the cloth carries, in the last while \[N\].
@@ -95,7 +95,7 @@ pub struct Scratch {
     /// Contacts in this substep, noted before the constraints are solved.
     pub contacts: Contacts,
     /// What is known of the colliders around.
-    pub around: Around,
+    pub cache: ContactCache,
     /// Multipliers of the constraints.
     pub lambda: Vec<f32>,
 }
@@ -176,12 +176,12 @@ impl Particles {
             + heap(&self.state.passing)
             + self
                 .state
-                .sights
+                .planes
                 .iter()
-                .map(Sight::memory_bytes)
+                .map(MeshPlanes::memory_bytes)
                 .sum::<usize>()
             + heap(&self.state.calm)
-            + self.scratch.around.memory_bytes()
+            + self.scratch.cache.memory_bytes()
             + self.state.grant.memory_bytes()
             + heap(&self.input.attached)
             + heap(&self.input.limited)
@@ -388,7 +388,7 @@ impl Particles {
     pub fn begin_step(&mut self) {
         self.state.step_position.copy_from(&self.state.position);
         self.state.touch.overlaps = false;
-        self.scratch.around.begin_step();
+        self.scratch.cache.begin_step();
     }
 
     /// Puts the particles back to where the step started, without velocity.

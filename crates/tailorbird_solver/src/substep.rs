@@ -3,7 +3,7 @@
 use bevy_math::Vec3;
 use fearless_simd::Level;
 
-use crate::crew::Crew;
+use crate::workers::Workers;
 
 /// A substep of one cloth: what its stages are told.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ pub struct Substep<'a> {
     /// How fast what is inside a collider is pushed out of it [m/s].
     pub overlap_speed: f32,
     /// Who works on it.
-    pub crew: Crew<'a>,
+    pub workers: Workers<'a>,
 }
 
 impl Substep<'_> {

@@ -61,7 +61,7 @@ pub fn gather_reactions(
     order.clear();
     for (entity, mut particles) in &mut cloths {
         let particles = &mut particles.bypass_change_detection().0;
-        let bodies = &particles.scratch.around.bodies;
+        let bodies = &particles.scratch.cache.bodies;
         if bodies.touched() {
             order.push(entity);
         }
@@ -74,7 +74,7 @@ pub fn gather_reactions(
         let Ok((_, mut particles)) = cloths.get_mut(*entity) else {
             continue;
         };
-        let bodies = &mut particles.bypass_change_detection().0.scratch.around.bodies;
+        let bodies = &mut particles.bypass_change_detection().0.scratch.cache.bodies;
         for (body, proxy) in colliders.bodies.iter().zip(&bodies.list) {
             if !proxy.touched {
                 continue;

@@ -5,7 +5,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Isometry3d, Vec3};
 use tailorbird_solver::{
-    crew::Crew,
     kernels::{
         aerodynamics::{self, Air, AirSheet},
         breeze::{self, Breeze},
@@ -14,6 +13,7 @@ use tailorbird_solver::{
     particles::{Input, Particles, Scratch, State},
     points::Points,
     wind::{WAVES, Wave, WindShape, sine, strength},
+    workers::Workers,
 };
 use tracing::error;
 
@@ -193,7 +193,7 @@ pub fn apply_wind(
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        wind.blow(&step, Crew::ALONE, &mut cloth);
+        wind.blow(&step, Workers::ALONE, &mut cloth);
     });
 }
 
@@ -232,7 +232,7 @@ impl BlowingWind {
     }
 
     /// What [`apply_wind`] does to one cloth.
-    pub(crate) fn blow(&self, step: &ClothStep, crew: Crew, cloth: &mut ClothStagesItem) {
+    pub(crate) fn blow(&self, step: &ClothStep, workers: Workers, cloth: &mut ClothStagesItem) {
         let (model, density) = (self.valid.model, self.valid.air_density);
         let (topology, material, frame) = (cloth.topology, cloth.material, &*cloth.frame);
         if cloth.particles.is_empty() || !material.errors().is_empty() {
@@ -289,7 +289,7 @@ impl BlowingWind {
             let out = SharedPoints::new(with_air);
             let seconds = per_second.recip();
             for breeze in breezes {
-                crew.share(0..position.len(), |range| {
+                workers.share(0..position.len(), |range| {
                     breeze::add(level, &breeze, seconds, position, out, range);
                 });
             }
@@ -334,7 +334,7 @@ impl BlowingWind {
                 inv_mass,
                 acceleration: SharedPoints::new(acceleration),
             };
-            crew.share(0..lattice.rows as usize, |rows| match model {
+            workers.share(0..lattice.rows as usize, |rows| match model {
                 WindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
                 WindModel::Aerodynamic => {
                     aerodynamics::drag_and_lift_on_sheet(level, sheet, air, per_second, rows);

@@ -5,9 +5,9 @@ use std::{mem, ops::Range};
 use bevy_math::Vec3;
 
 use super::{
-    around::Around,
     bodies::{Coupling, Proxy, Pull, Struck},
-    near::LEAVING,
+    broad_phase::LEAVING,
+    cache::ContactCache,
 };
 use crate::{
     cloth::Cloth,
@@ -32,10 +32,10 @@ impl Colliders {
         phase: Phase,
         substep: &Substep,
         cloth: &mut Cloth,
-        around: &mut Around,
+        cache: &mut ContactCache,
     ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
-        let Some(mut proxy) = around.bodies.list.get(index).copied() else {
+        let Some(mut proxy) = cache.bodies.list.get(index).copied() else {
             return;
         };
         let friction = combined_friction(collider.friction, material.friction);
@@ -44,19 +44,19 @@ impl Colliders {
         };
         let margin = collider.margin + material.margin;
         let particles = &mut *cloth.particles;
-        let mut couplings = mem::take(&mut around.couplings);
+        let mut couplings = mem::take(&mut cache.couplings);
         let old = group(&couplings, collider);
 
-        let mut found = mem::take(&mut around.found);
+        let mut found = mem::take(&mut cache.found);
         found.clear();
         found.extend(couplings[old.clone()].iter().map(|c| c.particle));
         let (way, len) = (struck.way(frame), particles.len());
         let motion = struck.motion(frame);
         let mut start = 0;
-        while let Some(range) = around.next(&collider.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&collider.solid, way, margin, start, len) {
             start = range.end;
-            collider.prepare(&motion, margin, particles, around, substep, range.clone());
-            collider.find_touching(&motion, margin, particles, around, range, &mut found);
+            collider.prepare(&motion, margin, particles, cache, substep, range.clone());
+            collider.find_touching(&motion, margin, particles, cache, range, &mut found);
         }
         found.sort_unstable();
         found.dedup();
@@ -70,7 +70,7 @@ impl Colliders {
                 particles.state.previous_position.get(i),
                 particles.state.position.get(i),
             ];
-            let contact = collider.nearest(&struck.motion(frame), margin, around, i, path);
+            let contact = collider.nearest(&struck.motion(frame), margin, cache, i, path);
             if contact.depth <= 0.0 && (known.is_none() || contact.depth < -LEAVING) {
                 continue;
             }
@@ -98,18 +98,18 @@ impl Colliders {
             &particles.state.position,
             &particles.state.previous_position,
         ];
-        around.update_each(substep.level, points, &found);
-        around.found = found;
-        around.couplings = couplings;
-        around.bodies.list[index] = proxy;
+        cache.update_each(substep.level, points, &found);
+        cache.found = found;
+        cache.couplings = couplings;
+        cache.bodies.list[index] = proxy;
     }
 
     /// Shares bodies out to the particles that are coupled with them, and tells the constraints.
-    pub fn share_out(&self, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
-        let mut couplings = mem::take(&mut around.couplings);
+    pub fn share_out(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
+        let mut couplings = mem::take(&mut cache.couplings);
         // What no longer comes near a collider touches it no more.
-        couplings.retain(|coupling| self.find(coupling, around).is_some());
-        let bodies = &mut around.bodies.list;
+        couplings.retain(|coupling| self.find(coupling, cache).is_some());
+        let bodies = &mut cache.bodies.list;
         bodies.iter_mut().for_each(|proxy| proxy.coupled = 0);
         for coupling in &couplings {
             bodies[coupling.body].coupled += 1;
@@ -129,9 +129,9 @@ impl Colliders {
         }
         for group in couplings.chunk_by_mut(|a, b| a.collider == b.collider) {
             let body = group[0].body;
-            let mut proxy = around.bodies.list[body];
+            let mut proxy = cache.bodies.list[body];
             let count = proxy.coupled as f32;
-            let Some(collider) = self.find(&group[0], around) else {
+            let Some(collider) = self.find(&group[0], cache) else {
                 continue;
             };
             let Some(struck) = self.struck((collider, body), 0.0, &mut proxy, substep) else {
@@ -153,12 +153,12 @@ impl Colliders {
                 }
             }
         }
-        around.couplings = couplings;
+        cache.couplings = couplings;
     }
 
     /// Gives bodies what constraints pushed the particles with that are coupled with them.
-    pub fn hand_over(&self, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
-        let mut couplings = mem::take(&mut around.couplings);
+    pub fn hand_over(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
+        let mut couplings = mem::take(&mut cache.couplings);
         let frame = &*cloth.frame;
         let Particles {
             state:
@@ -174,10 +174,10 @@ impl Colliders {
         let pins = motion_of_pins(inv_mass, [previous_position, position]);
         for group in couplings.chunk_by_mut(|a, b| a.collider == b.collider) {
             let body = group[0].body;
-            let Some(mut proxy) = around.bodies.list.get(body).copied() else {
+            let Some(mut proxy) = cache.bodies.list.get(body).copied() else {
                 continue;
             };
-            let Some(collider) = self.find(&group[0], around) else {
+            let Some(collider) = self.find(&group[0], cache) else {
                 continue;
             };
             let Some(mut struck) = self.struck((collider, body), 0.0, &mut proxy, substep) else {
@@ -192,7 +192,7 @@ impl Colliders {
                 let mut pushed = coupling.share * contacts.pressed.get(i).copied().unwrap_or(0.0);
                 let mut held = coupling.held.max(0.0);
                 let path = [previous_position.get(i), position.get(i)];
-                let meets = collider.nearest(&motion, margin, around, i, path).depth >= 0.0;
+                let meets = collider.nearest(&motion, margin, cache, i, path).depth >= 0.0;
                 if pushed > 0.0 || !meets {
                     let to = path[1] + coupling.normal * (inv_mass[i] * pushed);
                     position.set(i, to);
@@ -217,15 +217,15 @@ impl Colliders {
                 struck.push(before, pull * stopped);
                 struck.shift(before, pull * (1.0 - stopped));
             }
-            around.bodies.list[body] = proxy;
+            cache.bodies.list[body] = proxy;
         }
         contacts.pressed.clear();
-        around.couplings = couplings;
+        cache.couplings = couplings;
     }
 
     /// The collider that a particle is coupled with, where it is near and belongs to that body.
-    fn find(&self, coupling: &Coupling, around: &Around) -> Option<&MovingCollider> {
-        let near = around.near.iter().filter_map(|&k| self.colliders.get(k));
+    fn find(&self, coupling: &Coupling, cache: &ContactCache) -> Option<&MovingCollider> {
+        let near = cache.near.iter().filter_map(|&k| self.colliders.get(k));
         near.into_iter()
             .find(|c| c.id == coupling.collider && c.body == Some(coupling.body))
     }

@@ -1,12 +1,12 @@
 //! Colliders, and what particles do at them.
 
-pub mod around;
 pub mod bodies;
+pub mod broad_phase;
+pub mod cache;
 pub mod colliders;
 mod coupling;
-mod narrow;
-pub mod near;
-pub mod sight;
+mod narrow_phase;
+pub mod planes;
 pub mod solid;
 pub mod surface;
 
@@ -27,7 +27,7 @@ impl Colliders {
     /// What [`find_contacts`] does for one cloth.
     pub fn approach(&self, substep: &Substep, cloth: &mut Cloth) {
         let particles = &mut *cloth.particles;
-        let bodies = &mut particles.scratch.around.bodies;
+        let bodies = &mut particles.scratch.cache.bodies;
         bodies.advance(&self.bodies, substep);
         particles.state.touch = Touch {
             overlaps: particles.state.touch.overlaps,
@@ -35,15 +35,15 @@ impl Colliders {
         };
         if cloth.method != Method::Lines || self.colliders.is_empty() {
             particles.scratch.contacts.clear();
-            particles.scratch.around.couplings.clear();
+            particles.scratch.cache.couplings.clear();
             return;
         }
         let len = particles.len();
         particles.scratch.contacts.reset(len);
         self.collide(Phase::Approach, None, substep, cloth);
-        let mut around = mem::take(&mut cloth.particles.scratch.around);
-        self.share_out(substep, cloth, &mut around);
-        cloth.particles.scratch.around = around;
+        let mut cache = mem::take(&mut cloth.particles.scratch.cache);
+        self.share_out(substep, cloth, &mut cache);
+        cloth.particles.scratch.cache = cache;
         cloth.particles.state.touch.any = cloth.particles.scratch.contacts.any;
     }
 
@@ -71,11 +71,11 @@ impl Colliders {
         if !loaded && !self.colliders.iter().any(meant) {
             return;
         }
-        let mut around = mem::take(&mut cloth.particles.scratch.around);
-        around.sights = mem::take(&mut cloth.particles.state.sights);
-        around.passing = mem::take(&mut cloth.particles.state.passing);
+        let mut cache = mem::take(&mut cloth.particles.scratch.cache);
+        cache.planes = mem::take(&mut cloth.particles.state.planes);
+        cache.passing = mem::take(&mut cloth.particles.state.passing);
         if loaded {
-            self.hand_over(substep, cloth, &mut around);
+            self.hand_over(substep, cloth, &mut cache);
         }
         let layers = cloth.layers;
         let Particles {
@@ -91,22 +91,22 @@ impl Colliders {
         let stage = (substep.index, phase == Phase::Final);
         let margin = cloth.coefficients.margin;
         let stage = (substep.level, stage);
-        around.look(self, cloth.frame, layers, margin, stage, points);
-        let (passes, near) = (kinds.map_or(1, <[Kind]>::len), around.near.len());
+        cache.look(self, cloth.frame, layers, margin, stage, points);
+        let (passes, near) = (kinds.map_or(1, <[Kind]>::len), cache.near.len());
         for (pass, k) in (0..passes).flat_map(|pass| (0..near).map(move |k| (pass, k))) {
             let kind = kinds.map(|kinds| kinds[pass]);
-            let near = self.colliders.get(around.near[k]);
+            let near = self.colliders.get(cache.near[k]);
             let Some(collider) = near.filter(|collider| is_of(collider, kind)) else {
                 continue;
             };
             if let Some(body) = collider.body {
-                self.strike((collider, body), phase, substep, cloth, &mut around);
+                self.strike((collider, body), phase, substep, cloth, &mut cache);
             } else {
-                collider.collide(phase, substep, cloth, &mut around);
+                collider.collide(phase, substep, cloth, &mut cache);
             }
         }
-        cloth.particles.state.sights = mem::take(&mut around.sights);
-        cloth.particles.state.passing = mem::take(&mut around.passing);
-        cloth.particles.scratch.around = around;
+        cloth.particles.state.planes = mem::take(&mut cache.planes);
+        cloth.particles.state.passing = mem::take(&mut cache.passing);
+        cloth.particles.scratch.cache = cache;
     }
 }

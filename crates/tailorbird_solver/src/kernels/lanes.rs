@@ -35,7 +35,7 @@ pub struct Shared<'a> {
 }
 
 // SAFETY: in each phase of the solver a task touches elements of its own alone (its rows, or its columns, or what its
-// constraints name, of which no two share one); a phase ends when all its parts are done (`crate::crew`).
+// constraints name, of which no two share one); a phase ends when all its parts are done (`crate::workers`).
 unsafe impl Send for Shared<'_> {}
 // SAFETY: as above.
 unsafe impl Sync for Shared<'_> {}

@@ -4,7 +4,6 @@ use fearless_simd::Level;
 
 use crate::{
     coefficients::Coefficients,
-    crew::Crew,
     kernels::{
         edges::LineStiffness,
         lanes::{Shared, SharedPoints},
@@ -22,6 +21,7 @@ use crate::{
     substep::Substep,
     tethers::{Anchors, Tethers},
     topology::{Topology, lattice::Lattice},
+    workers::Workers,
 };
 
 /// How much longer than at rest a tether is [-]: what is left to the chains.
@@ -36,7 +36,7 @@ const STRETCH_ROOM: f32 = 20.0;
 /// One pass over the constraints.
 pub struct Pass<'a> {
     pub level: Level,
-    pub crew: Crew<'a>,
+    pub workers: Workers<'a>,
     pub topology: &'a Topology,
     pub material: &'a Coefficients,
     /// Length of the substep \[s\].
@@ -57,7 +57,7 @@ impl<'a> Pass<'a> {
     ) -> Self {
         Self {
             level: substep.level,
-            crew: substep.crew,
+            workers: substep.workers,
             topology,
             material,
             seconds: substep.seconds,
@@ -170,8 +170,8 @@ impl Pass<'_> {
             position.set(i, tethers.reached(held.particle, from, position, slack));
         }
         let all = particles.len();
-        let (level, crew) = (self.level, self.crew);
-        for coupling in &mut particles.scratch.around.couplings {
+        let (level, workers) = (self.level, self.workers);
+        for coupling in &mut particles.scratch.cache.couplings {
             let place = particles.state.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
@@ -186,7 +186,7 @@ impl Pass<'_> {
                     let effort = particles.state.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
                     let how = (slack, self.recovery(effort, fresh, start));
-                    crew.share(0..rows, |rows| {
+                    workers.share(0..rows, |rows| {
                         tether::solve_straight(level, sheet, &tethers, how, rows);
                     });
                 }
@@ -195,12 +195,12 @@ impl Pass<'_> {
                 let effort = particles.state.effort;
                 let (sheet, start) = self.sheet(particles, [all, 1]);
                 let how = (slack, self.recovery(effort, fresh, start));
-                crew.share(0..all, |range| {
+                workers.share(0..all, |range| {
                     tether::solve(level, sheet, &tethers, how, range);
                 });
             }
         }
-        for coupling in &mut particles.scratch.around.couplings {
+        for coupling in &mut particles.scratch.cache.couplings {
             let place = particles.state.position.get(coupling.particle);
             coupling.held -= coupling.normal.dot(place);
         }
@@ -223,12 +223,12 @@ impl Pass<'_> {
             alpha_tilde: self.alpha_tilde(self.material.shear_compliance),
             rising_first: odd,
         };
-        self.crew.share(0..rows, |rows| {
+        self.workers.share(0..rows, |rows| {
             shear::solve(level, sheet, shear, rows);
         });
-        let part = self.crew.part(rows);
+        let part = self.workers.part(rows);
         let seams = rows.div_ceil(part) - 1;
-        self.crew.share_by(1, 0..seams, |seams| {
+        self.workers.share_by(1, 0..seams, |seams| {
             for seam in seams {
                 shear::solve_seam(level, sheet, shear, (seam + 1) * part - 1);
             }
@@ -237,14 +237,14 @@ impl Pass<'_> {
         let weft = self.line(self.material.weft_compliance, dx, dy, density);
         let warp = self.line(self.material.warp_compliance, dy, dx, density);
         let solve_columns = || {
-            self.crew.share(0..columns, |columns| {
+            self.workers.share(0..columns, |columns| {
                 lattice::solve_columns(level, sheet, warp, columns);
             });
         };
         if odd {
             solve_columns();
         }
-        self.crew.share(0..rows, |rows| {
+        self.workers.share(0..rows, |rows| {
             lattice::solve_rows(level, sheet, weft, rows);
         });
         if !odd {
@@ -334,9 +334,9 @@ pub fn integrate(
 
 /// Moves a sheet, in blocks of rows, one for each part of the crew.
 fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
-    let (level, crew) = (substep.level, substep.crew);
+    let (level, workers) = (substep.level, substep.workers);
     let rows = motion.sheet.rows;
-    let part = crew.part(rows);
+    let part = workers.part(rows);
     if part == rows {
         motion.sweep(level, 0..rows, Beside::default());
         return;
@@ -350,7 +350,7 @@ fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
         motion.save_row(level, (k + 1) * part, below);
     }
     let seam = |k: usize| scratch.get(2 * len * k..2 * len * (k + 1));
-    crew.share(0..rows, |rows| {
+    workers.share(0..rows, |rows| {
         let block = rows.start / part;
         let beside = Beside {
             above: block.checked_sub(1).and_then(seam).map(|s| &s[..len]),

@@ -1,6 +1,6 @@
 //! Hulls, as the planes of their faces.
 
-use bevy_math::{DVec3, Vec3, Vec4};
+use bevy_math::{Vec3, Vec4};
 use fearless_simd::Level;
 use parry3d::{query::PointQuery, shape::ConvexPolyhedron};
 use proptest::prelude::*;

@@ -9,7 +9,7 @@ use crate::{
 
 /// What a cloth knows of the colliders around it; scratch of a step.
 #[derive(Clone, Debug, Default)]
-pub struct Around {
+pub struct ContactCache {
     /// Those that are near, as places in the list of colliders.
     pub near: Vec<usize>,
     /// Where the list holds, in the world \[m\].
@@ -23,14 +23,14 @@ pub struct Around {
     /// The particles that carry parts of bodies; those of each collider side by side.
     pub couplings: Vec<Coupling>,
     /// What particles see of meshes: those of the state, while colliders are looked at.
-    pub sights: Vec<Sight>,
+    pub planes: Vec<MeshPlanes>,
     /// Particles that touch something.
     pub found: Vec<usize>,
     /// Colliders that go through the cloth: those of the state, while colliders are looked at.
     pub passing: Vec<ColliderId>,
 }
 
-impl Around {
+impl ContactCache {
     /// Forgets what held in the step before.
     pub fn begin_step(&mut self) {
         self.holds = None;
@@ -46,14 +46,14 @@ impl Around {
 
 /// What the particles of a cloth see of a mesh.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct MeshPlanes {
     pub collider: Option<(ColliderId, u64)>,
     pub patches: Patches,
     /// Particles whose plane holds no longer; scratch.
     pub outdated: Vec<usize>,
 }
 
-impl Sight {
+impl MeshPlanes {
     /// What it takes on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let Patches {

@@ -6,8 +6,8 @@ use bevy_math::{Isometry3d, Vec3};
 use fearless_simd::Level;
 
 use super::{
-    around::{Around, Sight},
-    sight::look,
+    cache::{ContactCache, MeshPlanes},
+    planes::look,
     solid::Solid,
 };
 use crate::{
@@ -144,23 +144,29 @@ const FAST: f32 = 2.0;
 
 impl MovingCollider {
     /// Whether it goes through the cloth, at this speed [m/s].
-    fn passes(&self, speed: f32, around: &mut Around) -> bool {
-        let at = around.passing.iter().position(|key| *key == self.id);
+    fn passes(&self, speed: f32, cache: &mut ContactCache) -> bool {
+        let at = cache.passing.iter().position(|key| *key == self.id);
         if let Some(at) = at
             && speed < 0.5 * FAST
         {
-            around.passing.swap_remove(at);
+            cache.passing.swap_remove(at);
             return false;
         }
         at.is_some()
     }
 
     /// Keeps the particles of one cloth out.
-    pub fn collide(&self, phase: Phase, substep: &Substep, cloth: &mut Cloth, around: &mut Around) {
+    pub fn collide(
+        &self,
+        phase: Phase,
+        substep: &Substep,
+        cloth: &mut Cloth,
+        cache: &mut ContactCache,
+    ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
         let way = frame.way_to_frame(self.start, self.end, substep.fractions());
         let far = way[0].translation.distance(way[1].translation);
-        if self.passes(far / substep.seconds, around) {
+        if self.passes(far / substep.seconds, cache) {
             return;
         }
         let margin = self.margin + material.margin;
@@ -180,20 +186,20 @@ impl MovingCollider {
         let particles = &mut *cloth.particles;
         let len = particles.len();
         let (mut start, mut touches) = (0, false);
-        while let Some(range) = around.next(&self.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&self.solid, way, margin, start, len) {
             start = range.end;
-            self.prepare(&motion, margin, particles, around, substep, range.clone());
+            self.prepare(&motion, margin, particles, cache, substep, range.clone());
             let any = self.collide_range(
                 phase,
                 substep,
                 (&motion, turn, margin),
                 touching(particles, phase, true, out),
-                around.seen(self),
+                cache.seen(self),
                 range.clone(),
             );
             if any {
                 if particles.state.effort.drawn_out && far > FAST * substep.seconds {
-                    around.passing.push(self.id);
+                    cache.passing.push(self.id);
                 }
                 touches = true;
                 if phase == Phase::Approach {
@@ -206,13 +212,13 @@ impl MovingCollider {
                     &particles.state.position,
                     &particles.state.previous_position,
                 ];
-                around.update(substep.level, points, range);
+                cache.update(substep.level, points, range);
             }
         }
         particles.state.touch.colliders += usize::from(touches && phase == Phase::Approach);
         particles.state.touch.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some(held) = particles.input.grabbed {
-            self.collide_held(held.particle as usize, &motion, margin, particles, around);
+            self.collide_held(held.particle as usize, &motion, margin, particles, cache);
         }
     }
 
@@ -226,7 +232,7 @@ impl MovingCollider {
         seen: &Patches,
         range: std::ops::Range<usize>,
     ) -> bool {
-        let (level, crew) = (substep.level, substep.crew);
+        let (level, workers) = (substep.level, substep.workers);
         let Motion {
             from, to, friction, ..
         } = *motion;
@@ -241,7 +247,7 @@ impl MovingCollider {
                     radius,
                     friction,
                 };
-                crew.any(range, |range| {
+                workers.any(range, |range| {
                     sphere::collide_all(level, &sphere, particles, range)
                 })
             }
@@ -253,11 +259,11 @@ impl MovingCollider {
                     margin,
                     friction,
                 };
-                crew.any(range, |range| {
+                workers.any(range, |range| {
                     half_space::collide_all(level, &plane, particles, range)
                 })
             }
-            other => with_solid!(other, margin, seen, |solid| crew.any(range, |range| {
+            other => with_solid!(other, margin, seen, |solid| workers.any(range, |range| {
                 solid::collide_all(level, &solid, motion, particles, range)
             })),
         }
@@ -269,7 +275,7 @@ impl MovingCollider {
         motion: &Motion,
         margin: f32,
         particles: &mut Particles,
-        around: &Around,
+        cache: &ContactCache,
         range: std::ops::Range<usize>,
         found: &mut Vec<usize>,
     ) {
@@ -278,7 +284,7 @@ impl MovingCollider {
             overlaps: &AtomicBool::new(false),
         };
         let touching = touching(particles, Phase::Final, false, out);
-        let seen = around.seen(self);
+        let seen = cache.seen(self);
         with_solid!(&self.solid, margin, seen, |solid| {
             solid::find(&solid, motion, touching, range, |i| found.push(i));
         });
@@ -289,11 +295,11 @@ impl MovingCollider {
         &self,
         motion: &Motion,
         margin: f32,
-        around: &Around,
+        cache: &ContactCache,
         i: usize,
         path: [Vec3; 2],
     ) -> Contact {
-        let seen = around.seen(self);
+        let seen = cache.seen(self);
         with_solid!(&self.solid, margin, seen, |solid| {
             solid::nearest(&solid, motion, i, path)
         })
@@ -306,11 +312,11 @@ impl MovingCollider {
         motion: &Motion,
         margin: f32,
         particles: &mut Particles,
-        around: &mut Around,
+        cache: &mut ContactCache,
     ) {
         if let (Solid::Mesh(surface), id) = (&self.solid, self.surface_id()) {
-            let sight = around.sights.iter_mut().find(|sight| sight.collider == id);
-            if let Some(Sight { patches, .. }) = sight
+            let planes = cache.planes.iter_mut().find(|planes| planes.collider == id);
+            if let Some(MeshPlanes { patches, .. }) = planes
                 && i < patches.holds.len()
             {
                 look(surface, patches, motion, particles, i, margin);
@@ -322,7 +328,7 @@ impl MovingCollider {
             particles.state.previous_position.get(i),
             particles.state.position.get(i),
         ];
-        let contact = self.nearest(motion, margin, around, i, path);
+        let contact = self.nearest(motion, margin, cache, i, path);
         if contact.depth > 0.0 {
             let to = path[1] + contact.normal * contact.depth;
             particles.state.position.set(i, to);
@@ -334,7 +340,7 @@ impl MovingCollider {
                 &particles.state.position,
                 &particles.state.previous_position,
             ];
-            around.update(Level::fallback(), points, i..i + 1);
+            cache.update(Level::fallback(), points, i..i + 1);
         }
     }
 }

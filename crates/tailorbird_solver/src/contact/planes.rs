@@ -1,9 +1,9 @@
 //! What the particles of a cloth see of triangle meshes.
 
-use super::{around::Around, solid::Solid, surface::Surface};
+use super::{cache::ContactCache, solid::Solid, surface::Surface};
 use crate::{
     contact::{
-        around::Sight,
+        cache::MeshPlanes,
         colliders::{ColliderId, MovingCollider},
     },
     kernels::{
@@ -16,16 +16,16 @@ use crate::{
 
 static NOTHING: std::sync::LazyLock<Patches> = std::sync::LazyLock::new(Patches::default);
 
-impl Around {
+impl ContactCache {
     /// What the particles see of this collider.
     pub fn seen(&self, collider: &MovingCollider) -> &Patches {
         let id = collider.surface_id();
-        let sight = self.sights.iter().find(|sight| sight.collider == id);
-        sight.map_or(&NOTHING, |sight| &sight.patches)
+        let planes = self.planes.iter().find(|planes| planes.collider == id);
+        planes.map_or(&NOTHING, |planes| &planes.patches)
     }
 }
 
-impl Sight {
+impl MeshPlanes {
     /// Whether it is of this collider.
     pub fn is_of(&self, collider: &MovingCollider) -> bool {
         self.collider.is_some() && self.collider == collider.surface_id()
@@ -47,7 +47,7 @@ impl MovingCollider {
         motion: &Motion,
         margin: f32,
         particles: &mut Particles,
-        around: &mut Around,
+        cache: &mut ContactCache,
         substep: &Substep,
         range: std::ops::Range<usize>,
     ) {
@@ -55,16 +55,16 @@ impl MovingCollider {
             return;
         };
         let len = particles.len();
-        let known = around.sights.iter().position(|sight| sight.collider == id);
+        let known = cache.planes.iter().position(|planes| planes.collider == id);
         let at = known.unwrap_or_else(|| {
-            around.sights.push(Sight::default());
-            around.sights.len() - 1
+            cache.planes.push(MeshPlanes::default());
+            cache.planes.len() - 1
         });
-        let Sight {
+        let MeshPlanes {
             collider,
             patches,
             outdated: found,
-        } = &mut around.sights[at];
+        } = &mut cache.planes[at];
         if *collider != id || patches.holds.len() != len {
             *collider = id;
             patches.reset(len);

@@ -9,7 +9,7 @@ use super::solid::{Solid, swept};
 use crate::{
     bounds::Bounds,
     contact::{
-        around::Around,
+        cache::ContactCache,
         colliders::{Colliders, Layers, MovingCollider},
     },
     frame::Frame,
@@ -34,7 +34,7 @@ fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     a.0.cmple(b.1).all() && a.1.cmpge(b.0).all()
 }
 
-impl Around {
+impl ContactCache {
     /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides their
     /// own.
     pub fn look(
@@ -84,8 +84,8 @@ impl Around {
         let near = &self.near;
         self.passing
             .retain(|key| near.iter().any(|k| colliders.colliders[*k].id == *key));
-        self.sights
-            .retain(|sight| near.iter().any(|k| sight.is_of(&colliders.colliders[*k])));
+        self.planes
+            .retain(|planes| near.iter().any(|k| planes.is_of(&colliders.colliders[*k])));
     }
 
     /// The next particles from `start` on, in whole blocks, that a solid may touch that moves like this in the cloth's frame.

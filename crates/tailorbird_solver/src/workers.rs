@@ -31,11 +31,11 @@ const SPINS: u32 = 200;
 
 /// Who works on a cloth.
 #[derive(Clone, Copy, Debug)]
-pub struct Crew<'a>(Option<&'a Arc<Desk>>);
+pub struct Workers<'a>(Option<&'a Arc<Queue>>);
 
 /// Where the phases of a step are handed out.
 #[derive(Debug)]
-pub struct Desk {
+pub struct Queue {
     /// Which phase is in progress, in the upper half, and the next part of it to be taken.
     ticket: AtomicU64,
     /// Parts of the phase that are done.
@@ -60,17 +60,17 @@ struct Job {
 #[derive(Clone, Copy, Debug)]
 struct Work(Option<*const (dyn Fn(Range<usize>) + Sync)>);
 
-// SAFETY: what it points to is `Sync`, and is called only as long as the leader keeps it: see `Desk::take`.
+// SAFETY: what it points to is `Sync`, and is called only as long as the leader keeps it: see `Queue::take`.
 unsafe impl Send for Work {}
 
-impl Crew<'_> {
+impl Workers<'_> {
     /// This thread alone.
-    pub const ALONE: Crew<'static> = Crew(None);
+    pub const ALONE: Workers<'static> = Workers(None);
 
     /// The length of the parts of a range of this length, in [`Self::share`]: a multiple of 16 where there are several.
     pub fn part(self, len: usize) -> usize {
         const GRAIN: usize = 16;
-        let parts = self.0.map_or(1, |desk| desk.threads * PARTS_PER_THREAD);
+        let parts = self.0.map_or(1, |queue| queue.threads * PARTS_PER_THREAD);
         len.div_ceil(parts).next_multiple_of(GRAIN).min(len)
     }
 
@@ -82,7 +82,7 @@ impl Crew<'_> {
     /// [`Self::share`] in parts of this length.
     pub fn share_by(self, part: usize, all: Range<usize>, work: impl Fn(Range<usize>) + Sync) {
         match self.0 {
-            Some(desk) if all.len() > part => desk.run(all, part, &work),
+            Some(queue) if all.len() > part => queue.run(all, part, &work),
             _ => work(all),
         }
     }
@@ -99,18 +99,18 @@ impl Crew<'_> {
     }
 }
 
-impl Desk {
+impl Queue {
     /// Calls as many helpers as the pool has threads, but for the one that leads, while `lead` runs with them as its crew.
-    pub fn open(lead: impl FnOnce(Crew)) {
+    pub fn open(lead: impl FnOnce(Workers)) {
         let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
         Self::open_for(threads, lead);
     }
 
-    fn open_for(threads: usize, lead: impl FnOnce(Crew)) {
+    fn open_for(threads: usize, lead: impl FnOnce(Workers)) {
         let Some(pool) = ComputeTaskPool::try_get().filter(|_| threads > 1) else {
-            return lead(Crew::ALONE);
+            return lead(Workers::ALONE);
         };
-        let desk = Arc::new(Desk {
+        let queue = Arc::new(Queue {
             ticket: AtomicU64::new(0),
             done: AtomicU32::new(0),
             job: Mutex::new(Job {
@@ -124,12 +124,12 @@ impl Desk {
             open: AtomicBool::new(true),
             threads,
         });
-        let _closing = Closing(&desk);
+        let _closing = Closing(&queue);
         for _ in 1..threads {
-            let desk = desk.clone();
-            pool.spawn(async move { desk.help() }).detach();
+            let queue = queue.clone();
+            pool.spawn(async move { queue.help() }).detach();
         }
-        lead(Crew(Some(&desk)));
+        lead(Workers(Some(&queue)));
     }
 
     /// Does parts of the phases until there are no more phases.
@@ -171,7 +171,7 @@ impl Desk {
         *self.job.lock().unwrap_or_else(PoisonError::into_inner) = job;
         self.done.store(0, Ordering::Relaxed);
         self.ticket.store(u64::from(phase) << 32, Ordering::Release);
-        let _ending = Ending { desk: self, job };
+        let _ending = Ending { queue: self, job };
         while self.take(job, self.ticket.load(Ordering::Acquire)) {}
     }
 
@@ -224,7 +224,7 @@ impl Drop for Counted<'_> {
 
 /// Waits for the parts of a phase that others took.
 struct Ending<'a> {
-    desk: &'a Desk,
+    queue: &'a Queue,
     job: Job,
 }
 
@@ -232,17 +232,17 @@ impl Drop for Ending<'_> {
     fn drop(&mut self) {
         let all = u64::from(self.job.phase) << 32 | u64::from(self.job.parts);
         // Where the work panicked there are parts left, which nobody is to take any more.
-        let taken = self.desk.ticket.swap(all, Ordering::AcqRel) as u32;
+        let taken = self.queue.ticket.swap(all, Ordering::AcqRel) as u32;
         let taken = taken.min(self.job.parts);
         let mut idle = 0;
-        while self.desk.done.load(Ordering::Acquire) < taken {
+        while self.queue.done.load(Ordering::Acquire) < taken {
             wait(&mut idle);
         }
     }
 }
 
 /// Sends the helpers home.
-struct Closing<'a>(&'a Desk);
+struct Closing<'a>(&'a Queue);
 
 impl Drop for Closing<'_> {
     fn drop(&mut self) {
@@ -268,9 +268,9 @@ mod tests {
         for threads in [1, 2, 3, 8] {
             for len in [0, 1, 15, 16, 17, 1000] {
                 let counts: Vec<AtomicUsize> = (0..len).map(|_| AtomicUsize::new(0)).collect();
-                Desk::open_for(threads, |crew| {
+                Queue::open_for(threads, |workers| {
                     for phase in 1..=50 {
-                        crew.share(0..len, |range| {
+                        workers.share(0..len, |range| {
                             for count in &counts[range] {
                                 count.fetch_add(1, Ordering::Relaxed);
                             }
@@ -286,9 +286,9 @@ mod tests {
     #[test]
     fn any_finds_the_one() {
         pool();
-        Desk::open_for(4, |crew| {
-            assert!(crew.any(3..500, |range| range.contains(&499)));
-            assert!(!crew.any(3..500, |range| range.contains(&2)));
+        Queue::open_for(4, |workers| {
+            assert!(workers.any(3..500, |range| range.contains(&499)));
+            assert!(!workers.any(3..500, |range| range.contains(&2)));
         });
     }
 
@@ -297,9 +297,9 @@ mod tests {
         pool();
         let calls = AtomicUsize::new(0);
         let result = panic::catch_unwind(panic::AssertUnwindSafe(|| {
-            Desk::open_for(4, |crew| {
+            Queue::open_for(4, |workers| {
                 let leader = thread::current().id();
-                crew.share(0..10_000, |_| {
+                workers.share(0..10_000, |_| {
                     calls.fetch_add(1, Ordering::Relaxed);
                     assert_ne!(thread::current().id(), leader, "as is wanted here");
                 });
