@@ -314,7 +314,7 @@ impl ClothStagesItem<'_, '_> {
             .particles
             .0
             .scratch
-            .around
+            .cache
             .bodies
             .pushed(&colliders.list);
         let still = self.particles.0.is_at_rest(self.sleep.speed, seconds);
