@@ -16,11 +16,11 @@
 //!
 //! fn hang_a_curtain(mut commands: Commands, mut materials: ResMut<Assets<StandardMaterial>>) {
 //!     commands.spawn((
-//!         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
+//!         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)).centered(),
 //!         ClothMaterial::cotton(),
 //!         ClothPins::corners(GridCorner::TOP),
 //!         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.1, 0.1))),
-//!         Transform::from_xyz(-1.0, 2.0, 0.0),
+//!         Transform::from_xyz(0.0, 1.25, 0.0),
 //!     ));
 //! }
 //! ```

@@ -68,7 +68,7 @@ impl Cloth {
     pub const WELD_DISTANCE: f32 = ClothShape::WELD_DISTANCE;
 
     /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner lies at the
-    /// entity's origin. What is wrong with the values is reported when the cloth is built; [`Cloth::try_grid`] tells
+    /// entity's origin: it extends along +x and −y, and its front is seen from +z. [`Cloth::centered`] puts its middle there. What is wrong with the values is reported when the cloth is built; [`Cloth::try_grid`] tells
     /// at once.
     pub fn grid(size: Vec2, resolution: UVec2) -> Self {
         Self {

@@ -52,6 +52,8 @@ use crate::{
 
 /// How much of its entity's motion a cloth feels, and what counts as a teleport. Change it at any time.
 ///
+/// The motion of the cloth's own entity counts, and of its parents: what a cloth is merely attached to does not.
+///
 /// What is not felt carries the cloth along without giving it velocity; wind and colliders then act on it as they would if the
 /// entity stood still.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]

@@ -59,7 +59,7 @@ pub enum PinSelection {
     Cell(UVec2),
     /// A corner of a grid.
     Corner(GridCorner),
-    /// An edge of a grid.
+    /// An edge of a grid: from left to right, or from top to bottom.
     Edge(GridEdge),
     /// Every particle that lies within a ball at rest.
     Within {

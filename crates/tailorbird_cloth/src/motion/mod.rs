@@ -83,9 +83,10 @@ pub enum PerParticle {
 }
 
 impl PerParticle {
-    /// Weights, 0 to 1, times the value of weight 1.
+    /// Weights, 0 to 1, times the value of weight 1. A weight of 0 is 0 whatever that is: infinity is no limit.
     pub fn weighted(weights: impl IntoIterator<Item = f32>, most: f32) -> Self {
-        Self::Each(weights.into_iter().map(|weight| weight * most).collect())
+        let value = |weight| if weight == 0.0 { 0.0 } else { weight * most };
+        Self::Each(weights.into_iter().map(value).collect())
     }
 
     fn get(&self, i: usize) -> Option<f32> {
@@ -289,5 +290,17 @@ impl ClothMotionTargets {
         .into_iter()
         .flatten()
         .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_weight_of_nothing_holds_where_others_have_no_limit() {
+        let limits = PerParticle::weighted([0.0, 0.5, 1.0], f32::INFINITY);
+        let expected = vec![0.0, f32::INFINITY, f32::INFINITY];
+        assert_eq!(limits, PerParticle::Each(expected));
     }
 }
