@@ -83,6 +83,37 @@ mod tests {
         }
     }
 
+    /// A body that is pushed down into what lies below.
+    #[derive(Resource)]
+    struct Sinks(f32, Entity);
+
+    fn sink(sinks: Option<ResMut<Sinks>>, mut colliders: ResMut<ExternalColliders>) {
+        let Some(mut sinks) = sinks else {
+            return;
+        };
+        let at = |height| bevy_math::Isometry3d::from_translation(Vec3::new(0.05, height, -0.02));
+        let (start, end) = (at(sinks.0), at(sinks.0 - 0.002));
+        sinks.0 -= 0.002;
+        colliders.push(ExternalCollider {
+            entity: sinks.1,
+            part: 0,
+            shape: ColliderShape::Sphere { radius: 0.3 },
+            friction: 0.5,
+            margin: 0.0,
+            layers: ClothLayers::ALL,
+            start,
+            end,
+            body: Some(ColliderBody {
+                body: sinks.1,
+                inv_mass: Vec3::splat(0.5),
+                inv_inertia: bevy_math::Mat3::from_diagonal(Vec3::splat(14.0)),
+                center_of_mass: Vec3::from(end.translation),
+                linear_velocity: Vec3::NEG_Y * 0.12,
+                angular_velocity: Vec3::ZERO,
+            }),
+        });
+    }
+
     fn spoil(mut cloths: Query<&mut ClothParticles>) {
         for mut particles in &mut cloths {
             particles.bypass_change_detection().0.scratch = Scratch::default();
@@ -92,7 +123,7 @@ mod tests {
     /// The bits of all cloths after each of some steps.
     fn bits(steps: usize, spoils: bool, scene: &dyn Fn(&mut World)) -> Vec<Vec<u32>> {
         let mut app = app();
-        app.add_systems(FixedUpdate, go);
+        app.add_systems(FixedUpdate, (go, sink));
         if spoils {
             app.add_systems(FixedPostUpdate, spoil.before(ClothSystems::Prepare));
         }
@@ -112,7 +143,7 @@ mod tests {
             .collect()
     }
 
-    fn scenes() -> [(&'static str, fn(&mut World)); 6] {
+    fn scenes() -> [(&'static str, fn(&mut World)); 7] {
         fn square() -> (Cloth, ClothMaterial) {
             let cloth = Cloth::grid(Vec2::splat(2.0), UVec2::splat(24)).centered();
             (cloth, ClothMaterial::cotton())
@@ -176,6 +207,12 @@ mod tests {
                     Moves(Vec3::new(0.1, 0.0, -1.0)),
                     Transform::from_xyz(0.0, 0.0, 0.5),
                 ));
+            }),
+            ("a body", |world| {
+                let edges = [GridEdge::Left, GridEdge::Right];
+                world.spawn((square(), lying(), ClothPins::edges(edges)));
+                let body = world.spawn_empty().id();
+                world.insert_resource(Sinks(1.35, body));
             }),
             ("limits", |world| {
                 world.spawn((square(), lying(), ClothMotionConstraints::within(0.2)));

@@ -4,6 +4,7 @@ use bevy_math::Vec3;
 
 use crate::{
     contact::{
+        bodies::Coupling,
         cache::{ContactCache, MeshPlanes},
         colliders::ColliderId,
     },
@@ -58,6 +59,8 @@ pub struct State {
     pub planes: Vec<MeshPlanes>,
     /// Colliders that go through the cloth, as they tore it along faster than it can follow.
     pub passing: Vec<ColliderId>,
+    /// The particles that carry parts of bodies; those of each collider side by side.
+    pub couplings: Vec<Coupling>,
     /// The largest force on bodies that the cloth carries, in the last while \[N\].
     pub load: f32,
     /// What it touched in the last substep.
@@ -174,6 +177,7 @@ impl Particles {
             + heap(&self.input.pins)
             + heap(&self.input.pulled)
             + heap(&self.state.passing)
+            + heap(&self.state.couplings)
             + self
                 .state
                 .planes

@@ -20,7 +20,7 @@ pub struct ContactCache {
     pub blocks: Vec<(Vec3, Vec3)>,
     /// The bodies as this cloth has moved them.
     pub bodies: Bodies,
-    /// The particles that carry parts of bodies; those of each collider side by side.
+    /// The particles that carry parts of bodies: those of the state, while colliders are looked at.
     pub couplings: Vec<Coupling>,
     /// What particles see of meshes: those of the state, while colliders are looked at.
     pub planes: Vec<MeshPlanes>,

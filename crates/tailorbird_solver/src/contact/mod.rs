@@ -35,14 +35,16 @@ impl Colliders {
         };
         if cloth.method != Method::Lines || self.colliders.is_empty() {
             particles.scratch.contacts.clear();
-            particles.scratch.cache.couplings.clear();
+            particles.state.couplings.clear();
             return;
         }
         let len = particles.len();
         particles.scratch.contacts.reset(len);
         self.collide(Phase::Approach, None, substep, cloth);
         let mut cache = mem::take(&mut cloth.particles.scratch.cache);
+        cache.couplings = mem::take(&mut cloth.particles.state.couplings);
         self.share_out(substep, cloth, &mut cache);
+        cloth.particles.state.couplings = mem::take(&mut cache.couplings);
         cloth.particles.scratch.cache = cache;
         cloth.particles.state.touch.any = cloth.particles.scratch.contacts.any;
     }
@@ -74,6 +76,7 @@ impl Colliders {
         let mut cache = mem::take(&mut cloth.particles.scratch.cache);
         cache.planes = mem::take(&mut cloth.particles.state.planes);
         cache.passing = mem::take(&mut cloth.particles.state.passing);
+        cache.couplings = mem::take(&mut cloth.particles.state.couplings);
         if loaded {
             self.hand_over(substep, cloth, &mut cache);
         }
@@ -107,6 +110,7 @@ impl Colliders {
         }
         cloth.particles.state.planes = mem::take(&mut cache.planes);
         cloth.particles.state.passing = mem::take(&mut cache.passing);
+        cloth.particles.state.couplings = mem::take(&mut cache.couplings);
         cloth.particles.scratch.cache = cache;
     }
 }

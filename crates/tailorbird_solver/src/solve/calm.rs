@@ -12,7 +12,7 @@ use crate::{
         rigid_motion::RigidMotion,
         squeeze,
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::{Input, Particles, State},
     points::Points,
     topology::{Topology, lattice::Lattice},
 };
@@ -38,17 +38,17 @@ pub fn calm(
                 effort,
                 grant,
                 touch,
+                couplings,
                 ..
             },
         input: Input { mass, inv_mass, .. },
-        scratch: Scratch { cache, .. },
         ..
     } = particles;
     if let Some(lattice) = &topology.lattice {
         let sheet = bare(lattice, position, inv_mass);
         let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
         // What carries bodies takes more substeps for them already, and would throw them.
-        if cache.couplings.is_empty() {
+        if couplings.is_empty() {
             let side = lattice.columns.max(lattice.rows) as f32;
             let longest = Longest {
                 times: survey.longest,
@@ -93,7 +93,7 @@ pub fn calm(
                 strained += 1;
             }
         }
-        if cache.couplings.is_empty() {
+        if couplings.is_empty() {
             let part = strained as f32 / count.max(1) as f32;
             let longest = Longest {
                 times: far.sqrt(),

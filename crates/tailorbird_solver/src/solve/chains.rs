@@ -171,7 +171,7 @@ impl Pass<'_> {
         }
         let all = particles.len();
         let (level, workers) = (self.level, self.workers);
-        for coupling in &mut particles.scratch.cache.couplings {
+        for coupling in &mut particles.state.couplings {
             let place = particles.state.position.get(coupling.particle);
             coupling.held += coupling.normal.dot(place);
         }
@@ -200,7 +200,7 @@ impl Pass<'_> {
                 });
             }
         }
-        for coupling in &mut particles.scratch.cache.couplings {
+        for coupling in &mut particles.state.couplings {
             let place = particles.state.position.get(coupling.particle);
             coupling.held -= coupling.normal.dot(place);
         }
