@@ -230,7 +230,7 @@ impl Particles {
 
     /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
     /// frame \[m\]. `i` is in storage order, as in
-    /// [`Topology::particle_of_vertex`](tailorbird_solver::topology::Topology::particle_of_vertex()).
+    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex()).
     ///
     /// # Panics
     /// When `i` is out of range.

@@ -15,7 +15,7 @@ const FASTEST: f32 = 5.0;
 
 impl Particles {
     /// Whether runs of particles are as near to their mean place of the last while as if they went at `speed` [m/s], root of the mean
-    /// square, and none [`FASTEST`] times as far. To be asked once in each step.
+    /// square, and none five times as far. To be asked once in each step.
     ///
     /// A crease that trembles stays where it is, however fast; what swings does not.
     pub fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {

@@ -12,7 +12,7 @@ use crate::{
 
 /// Looks for contacts before the constraints are solved: pushes particles out, and notes where they touch.
 ///
-/// For [`ClothSolver::Chains`] alone, which then moves those particles along the surface, and bodies with them that cloth
+/// For [`ClothSolver::Chains`](crate::solver::ClothSolver::Chains) alone, which then moves those particles along the surface, and bodies with them that cloth
 /// pushes.
 pub fn find_contacts(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),

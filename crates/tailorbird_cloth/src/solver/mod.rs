@@ -1,4 +1,4 @@
-//! How accurate cloth is, and what that costs: two solvers. The systems of a substep are here, their arithmetic is in [`kernels`].
+//! How accurate cloth is, and what that costs: two solvers. The systems of a substep are here, what they do is in the crate `tailorbird_solver`.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -48,7 +48,7 @@
 //!
 //! # How good it is
 //!
-//! [`ClothParticles::stretch`] tells mean, 99 % quantile and largest stretch of the edges; `ClothDiagnosticsPlugin` of `tailorbird` keeps
+//! [`ClothParticles::stretch`](crate::particles::ClothParticles::stretch) tells mean, 99 % quantile and largest stretch of the edges; `ClothDiagnosticsPlugin` of `tailorbird` keeps
 //! them. The method and its limits are explained
 //! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_solver/src/kernels/README.md).
 

@@ -6,7 +6,7 @@ use crate::memory::heap;
 
 /// How particles are numbered.
 ///
-/// Users know a particle by its *given* number: its place in [`Cloth::rest_positions`](crate::cloth::Cloth::rest_positions).
+/// Users know a particle by its *given* number: its place in [`ClothShape::rest_positions`](crate::shape::ClothShape::rest_positions).
 /// Everything inside works with *stored* numbers, which put particles side by side that are solved side by side. For grids the
 /// two are the same.
 #[derive(Clone, Debug, Default)]

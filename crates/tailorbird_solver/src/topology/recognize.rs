@@ -21,7 +21,7 @@ const UNPLACED: [i32; 2] = [i32::MIN; 2];
 /// A triangle mesh that is a grid of equal rectangles, each cut along either diagonal.
 ///
 /// The grid's triangles are counter-clockwise when its columns run +x and its rows −y: the layout of
-/// [`ClothShape::Grid`](crate::cloth::ClothShape::Grid).
+/// [`ClothShape::Grid`](crate::shape::ClothShape::Grid).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recognized {
     /// Particles along a row, at least 2.
