@@ -7,7 +7,9 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_solver::{particles::Particles, points::Points, topology::Topology};
+use tailorbird_solver::{
+    held::HolderKind, particles::Particles, points::Points, topology::Topology,
+};
 use tracing::warn;
 
 use crate::{
@@ -103,7 +105,8 @@ impl ClothParticles {
         if count == 0 || count != new.particles() || !ratio.is_finite() {
             return false;
         }
-        let about = if self.0.input.pins.is_empty() && self.0.input.limited.is_empty() {
+        let is_none = |kind| self.0.input.held.of(kind).is_empty();
+        let about = if is_none(HolderKind::Pin) && is_none(HolderKind::Limit) {
             let at = |i: u32| self.0.state.position.get(i as usize);
             let held = || attached.particles().filter(|i| (*i as usize) < count);
             if held().next().is_some() {
@@ -140,15 +143,7 @@ impl ClothParticles {
         self.0.state.step_position = step;
         self.0.state.lost_displacement.fill(Vec3::ZERO);
         self.0.state.grown_about = about;
-        for pin in self
-            .0
-            .input
-            .pins
-            .iter_mut()
-            .chain(&mut self.0.input.grabbed)
-        {
-            pin.target *= ratio;
-        }
+        self.0.input.held.scale(ratio);
         self.0.state.calm.clear();
         self.0.state.grant.rescale();
         true

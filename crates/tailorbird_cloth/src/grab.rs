@@ -5,7 +5,10 @@ use std::collections::VecDeque;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::particles::{Held, Pulled};
+use tailorbird_solver::{
+    held::{Held, HeldBy, HolderKind},
+    particles::Pulled,
+};
 
 use crate::{
     cloth::Cloth,
@@ -108,11 +111,11 @@ pub fn apply_grab(
     commands: ParallelCommands,
 ) {
     for (entity, mut grab, topology, frame, mut particles, mut status) in &mut cloths {
-        let before = particles.0.input.grabbed.map(|held| held.particle);
+        let before = particles.grabbed();
         let order = particles.order.clone();
         let error = match &mut grab.bypass_change_detection().held {
             None => {
-                particles.0.input.grabbed = None;
+                particles.0.input.held.replace(HolderKind::Hand, []);
                 particles.0.input.pulled.clear();
                 None
             }
@@ -135,13 +138,14 @@ pub fn apply_grab(
                     .patch
                     .get_or_insert_with(|| patch(hand.particle, hand.radius, topology, &particles));
                 particles.0.input.pulled.clear();
-                particles.0.input.grabbed = None;
-                if !particles.is_held(hand.particle as usize) {
-                    particles.0.input.grabbed = Some(Held {
-                        particle: order.stored(hand.particle),
-                        // Where the frame will be when the hand is reached.
-                        target: frame.to_frame_at_end(hand.target),
-                    });
+                let is_held = particles.is_held(hand.particle as usize);
+                let in_hand = (!is_held).then(|| Held {
+                    particle: order.stored(hand.particle),
+                    // Where the frame will be when the hand is reached.
+                    by: HeldBy::Hand(frame.to_frame_at_end(hand.target)),
+                });
+                particles.0.input.held.replace(HolderKind::Hand, in_hand);
+                if !is_held {
                     particles.0.input.pulled.extend(patch.iter().map(
                         |&(particle, weight, offset)| Pulled {
                             particle: order.stored(particle),
@@ -154,7 +158,7 @@ pub fn apply_grab(
             }
         };
         ClothStatus::update(&mut status, entity, &commands, ErrorSource::Grab, error);
-        if particles.0.input.grabbed.map(|held| held.particle) != before {
+        if particles.grabbed() != before {
             particles.0.update_inv_masses();
         }
     }

@@ -5,7 +5,10 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{particles::Held, topology::Topology};
+use tailorbird_solver::{
+    held::{Held, HeldBy, HolderKind},
+    topology::Topology,
+};
 
 use crate::{
     cloth::Cloth,
@@ -369,27 +372,26 @@ pub fn apply_pins(
 impl ClothParticles {
     /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
     fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
-        let mut held: Vec<Held> =
-            pins.iter()
-                .map(|&(particle, target)| Held {
-                    particle: self.order.stored(particle),
-                    target: target.unwrap_or_else(|| {
-                        let before =
-                            self.0.input.pins.binary_search_by_key(&particle, |pin| {
-                                self.order.given(pin.particle)
-                            });
-                        before.map_or_else(
-                            |_| self.position(particle as usize),
-                            |at| self.0.input.pins[at].target,
-                        )
-                    }),
-                })
-                .collect();
+        let before = self.0.input.held.of(HolderKind::Pin);
+        let place = |particle: u32| {
+            let at = before.binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
+            match at.map(|at| before[at].by) {
+                Ok(HeldBy::Pin(place)) => place,
+                _ => self.position(particle as usize),
+            }
+        };
+        let mut held: Vec<Held> = pins
+            .iter()
+            .map(|&(particle, target)| Held {
+                particle: self.order.stored(particle),
+                by: HeldBy::Pin(target.unwrap_or_else(|| place(particle))),
+            })
+            .collect();
         // Stable, so that the last of several pins of a particle can be kept.
         held.sort_by_key(|pin| self.order.given(pin.particle));
         held.reverse();
         held.dedup_by_key(|pin| pin.particle);
         held.reverse();
-        self.0.input.pins = held;
+        self.0.input.held.replace(HolderKind::Pin, held);
     }
 }

@@ -39,7 +39,7 @@ use crate::{
     sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
     slow_build::warn_of_slow_build,
     solver::{calm_knots, solve_constraints, verlet_step},
-    step::{begin_step, plan_substeps, step_is_whole, step_runs},
+    step::{begin_cloths, begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
     validate::guard_finite,
     wind::{apply_wind, prepare_wind},
@@ -137,7 +137,15 @@ impl Plugin for ClothPlugin {
             Simulate,
             (
                 simulate_cloths.run_if(step_is_whole),
-                run_substeps.run_if(step_runs.and_then(not(step_is_whole))),
+                (
+                    begin_cloths,
+                    (run_substeps, guard_finite, settle_cloths)
+                        .chain()
+                        .run_if(step_runs),
+                )
+                    .chain()
+                    .run_if(not(step_is_whole)),
+                // When it is known who settles: what carries bodies does not.
                 gather_reactions,
             )
                 .chain(),
@@ -147,7 +155,6 @@ impl Plugin for ClothPlugin {
             Writeback,
             (
                 (
-                    (guard_finite, settle_cloths).chain().run_if(step_runs),
                     recompute_normals,
                     update_bounds,
                     rest_cloths.run_if(step_runs),

@@ -150,7 +150,7 @@ impl ClothStep {
             let stretched = 1.0 + more_substeps(solver, particles) * self.granted_substeps;
             let times = self.loaded(particles).max(stretched);
             let loaded = (unloaded as f32 * times).ceil() as u32;
-            let held = if particles.0.input.grabbed.is_some() {
+            let held = if particles.input.held.in_hand().is_some() {
                 loaded.max(solver.substeps_in_hand(topology))
             } else {
                 loaded
@@ -211,7 +211,7 @@ pub fn begin_step(
     mut valid: Local<ClothSettings>,
     time: Res<Time>,
     (schedules, own): (Res<Schedules>, Res<OwnStages>),
-    mut cloths: Query<(&ClothRest, &mut ClothParticles), With<Cloth>>,
+    cloths: Query<(&ClothRest, &ClothParticles), With<Cloth>>,
 ) {
     if settings.is_changed() {
         let errors = settings.errors();
@@ -249,18 +249,23 @@ pub fn begin_step(
     step.whole = step.running && own.are_all(&schedules);
 
     let (mut count, mut particles) = (0, 0);
-    for (rest, mut cloth) in &mut cloths {
-        if rest.is_asleep() {
-            continue;
-        }
-        count += 1;
-        particles += cloth.len();
-        if !step.whole {
-            // Also while paused: then both ends of the interpolation agree.
-            cloth.0.begin_step();
+    for (rest, cloth) in &cloths {
+        if !rest.is_asleep() {
+            count += 1;
+            particles += cloth.len();
         }
     }
     step.parallel = count > 1 && particles >= PARALLEL_FROM;
+}
+
+/// Notes where the step starts, of all cloths that are awake, those that have just woken included; also while paused: then both ends of the
+/// interpolation agree.
+pub(crate) fn begin_cloths(mut cloths: Query<(&ClothRest, &mut ClothParticles), With<Cloth>>) {
+    for (rest, mut cloth) in &mut cloths {
+        if !rest.is_asleep() {
+            cloth.0.begin_step();
+        }
+    }
 }
 
 /// How many more times as many substeps as at rest a cloth wants for a storm that stretches it [-]. The classic solver does not look.

@@ -9,14 +9,14 @@ impl Particles {
     /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
     /// around it along. `left` substeps remain, this one included.
     pub fn move_grabbed(&mut self, topology: &Topology, left: u32, seconds: f32) {
-        let Some(held) = self.input.grabbed else {
+        let Some((held, target)) = self.input.held.in_hand() else {
             return;
         };
-        let i = held.particle as usize;
+        let i = held as usize;
         let from = self.state.position.get(i);
-        let mut hand = from + (held.target - from) / left as f32;
+        let mut hand = from + (target - from) / left as f32;
         // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
-        for &neighbor in topology.neighbors(held.particle).iter().cycle().take(16) {
+        for &neighbor in topology.neighbors(held).iter().cycle().take(16) {
             let rest =
                 topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
             let anchor = self.state.position.get(neighbor as usize);

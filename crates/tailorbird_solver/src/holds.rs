@@ -4,6 +4,7 @@ use bevy_math::Vec3;
 
 use crate::{
     frame::Frame,
+    held::{Held, HeldBy, HolderKind},
     kernels::spring::{self, alpha_tilde},
     memory::heap,
     particles::Particles,
@@ -163,7 +164,11 @@ impl Holds {
         self.rigid.dedup_by_key(|hold| hold.particle);
         self.rigid
             .sort_unstable_by_key(|hold| (hold.body, hold.particle));
-        let changed = particles.attach(self.rigid.iter().map(|hold| hold.particle));
+        let attached = self.rigid.iter().map(|hold| Held {
+            particle: hold.particle,
+            by: HeldBy::Attachment,
+        });
+        let changed = particles.hold(HolderKind::Attachment, attached);
         let at = |hold: &Hold| particles.state.position.get(hold.particle as usize);
         let mut furthest = 0.0f32;
         let springs = self

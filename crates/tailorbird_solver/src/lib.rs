@@ -27,6 +27,8 @@ pub mod grant;
 #[doc(hidden)]
 pub mod hand;
 #[doc(hidden)]
+pub mod held;
+#[doc(hidden)]
 pub mod holds;
 pub mod instruction_set;
 #[doc(hidden)]

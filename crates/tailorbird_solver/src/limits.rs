@@ -1,6 +1,7 @@
 //! How far particles may get from their targets.
 
 use crate::{
+    held::HolderKind,
     kernels::{
         lanes::{Shared, SharedPoints},
         limit::{self, Backstop, Limits},
@@ -43,12 +44,12 @@ impl MotionLimits {
     pub fn advance(&self, substep: &Substep, particles: &mut Particles) {
         let Particles {
             state: State { position, .. },
-            input: Input { limited, .. },
+            input: Input { held, .. },
             ..
         } = particles;
         let left = substep.left() as f32;
-        for &i in limited.iter() {
-            let i = i as usize;
+        for limited in held.of(HolderKind::Limit) {
+            let i = limited.particle as usize;
             if i < self.targets[1].len() {
                 let (from, to) = (position.get(i), self.targets[1].get(i));
                 let next = if left > 1.0 {

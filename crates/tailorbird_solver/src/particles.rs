@@ -10,6 +10,7 @@ use crate::{
     },
     effort::Effort,
     grant::Grant,
+    held::{Held, HeldParticles, HolderKind},
     kernels::contact::{Contacts, Touch},
     memory::heap,
     numbers::Numbers,
@@ -78,14 +79,8 @@ pub struct Input {
     pub areal_density: f32,
     /// 1/mass [1/kg]; 0 is kinematic.
     pub inv_mass: Numbers,
-    /// Pinned particles, by the number that was given to them.
-    pub pins: Vec<Held>,
-    /// Particles that attachments hold rigidly.
-    pub attached: Vec<u32>,
-    /// Particles that motion constraints hold at their targets.
-    pub limited: Vec<u32>,
-    /// The particle that is moved by a grab, and where to \[m\].
-    pub grabbed: Option<Held>,
+    /// The particles that are held, and by what.
+    pub held: HeldParticles,
     /// Particles that are pulled along with the grabbed one.
     pub pulled: Vec<Pulled>,
 }
@@ -101,15 +96,6 @@ pub struct Scratch {
     pub cache: ContactCache,
     /// Multipliers of the constraints.
     pub lambda: Vec<f32>,
-}
-
-/// A particle that is held at a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
-    /// In storage order.
-    pub particle: u32,
-    /// In the cloth's frame \[m\].
-    pub target: Vec3,
 }
 
 /// A particle that is pulled along with the grabbed one.
@@ -174,7 +160,7 @@ impl Particles {
         points.map(Points::memory_bytes).iter().sum::<usize>()
             + lists.map(heap).iter().sum::<usize>()
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
-            + heap(&self.input.pins)
+            + self.input.held.memory_bytes()
             + heap(&self.input.pulled)
             + heap(&self.state.passing)
             + heap(&self.state.couplings)
@@ -187,8 +173,6 @@ impl Particles {
             + heap(&self.state.calm)
             + self.scratch.cache.memory_bytes()
             + self.state.grant.memory_bytes()
-            + heap(&self.input.attached)
-            + heap(&self.input.limited)
     }
 
     /// Whether there are none: the cloth is not built yet, or its shape is invalid.
@@ -269,30 +253,27 @@ impl Particles {
 
     /// Whether a particle is held by a pin.
     pub fn is_pinned(&self, i: usize) -> bool {
-        self.input
-            .pins
-            .binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
+        let pins = self.input.held.of(HolderKind::Pin);
+        pins.binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
             .is_ok()
     }
 
     /// Whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
     pub fn is_held(&self, i: usize) -> bool {
-        self.is_pinned(i) || {
-            let stored = self.order.stored(i as u32);
-            self.input.attached.contains(&stored) || self.input.limited.contains(&stored)
-        }
+        let stored = self.order.stored(i as u32);
+        self.anchors().any(|anchor| anchor == stored)
     }
 
     /// The pinned particles, in order.
     pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        let given = |pin: &Held| self.order.given(pin.particle) as usize;
-        self.input.pins.iter().map(given)
+        let given = |(particle, _)| self.order.given(particle) as usize;
+        self.input.held.pins().map(given)
     }
 
     /// The particle that a grab holds.
     pub fn grabbed(&self) -> Option<usize> {
-        let given = |held: Held| self.order.given(held.particle) as usize;
-        self.input.grabbed.map(given)
+        let (particle, _) = self.input.held.in_hand()?;
+        Some(self.order.given(particle) as usize)
     }
 
     /// Gives every particle its share of the mass; those that are held become kinematic.
@@ -310,32 +291,18 @@ impl Particles {
             // A vertex that no triangle uses has no mass and stays where it is.
             *inv_mass = if *mass > 0.0 { 1.0 / mass } else { 0.0 };
         }
-        let Particles {
-            input:
-                Input {
-                    inv_mass,
-                    pins,
-                    grabbed,
-                    attached,
-                    limited,
-                    ..
-                },
-            ..
-        } = self;
-        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
-        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+        let Input { inv_mass, held, .. } = &mut self.input;
+        for i in held.particles() {
             if let Some(inv_mass) = inv_mass.get_mut(i as usize) {
                 *inv_mass = 0.0;
             }
         }
     }
 
-    /// Replaces the particles that attachments hold rigidly. Returns whether they are others.
-    pub fn attach(&mut self, held: impl Iterator<Item = u32> + Clone) -> bool {
-        let changed = !held.clone().eq(self.input.attached.iter().copied());
+    /// Replaces the particles that holders of a kind hold. Returns whether they are others; then inverse masses follow.
+    pub fn hold(&mut self, kind: HolderKind, held: impl IntoIterator<Item = Held>) -> bool {
+        let changed = self.input.held.replace(kind, held);
         if changed {
-            self.input.attached.clear();
-            self.input.attached.extend(held);
             self.update_inv_masses();
         }
         changed
@@ -343,14 +310,7 @@ impl Particles {
 
     /// Particles that are kinematic wherever they go, in storage order: what the others are tethered to.
     pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
-        let pins = self.input.pins.iter().map(|pin| pin.particle);
-        pins.chain(
-            self.input
-                .attached
-                .iter()
-                .chain(&self.input.limited)
-                .copied(),
-        )
+        self.input.held.anchors()
     }
 
     /// The accelerations of this step, one for each particle, to add to.
@@ -365,25 +325,12 @@ impl Particles {
 
     /// Kinematic particles that do not move have no velocity.
     pub fn hold_still(&mut self) {
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input:
-                Input {
-                    pins,
-                    grabbed,
-                    attached,
-                    limited,
-                    ..
-                },
+        let State {
+            position,
+            previous_position,
             ..
-        } = self;
-        let held = pins.iter().chain(&*grabbed).map(|held| held.particle);
-        for i in held.chain(attached.iter().chain(&*limited).copied()) {
+        } = &mut self.state;
+        for i in self.input.held.particles() {
             previous_position.set(i as usize, position.get(i as usize));
         }
     }
@@ -414,8 +361,8 @@ impl Particles {
         for (i, place) in topology.rest_positions.iter().enumerate() {
             self.state.position.set(i, *place);
         }
-        for held in &self.input.pins {
-            self.state.position.set(held.particle as usize, held.target);
+        for (particle, place) in self.input.held.pins() {
+            self.state.position.set(particle as usize, place);
         }
         self.begin_step();
         self.reset_to_step_start();

@@ -5,6 +5,7 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
+    held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
     limits::MotionLimits,
     memory::heap,
@@ -101,7 +102,7 @@ pub fn prepare_motion(
                 disturbed: motion.disturbed,
                 ..MotionState::default()
             };
-            particles.limit([].into_iter());
+            particles.0.hold(HolderKind::Limit, []);
             for source in [ErrorSource::Motion, ErrorSource::MotionTargets] {
                 ClothStatus::update(&mut status, entity, &commands, source, None);
             }
@@ -176,22 +177,13 @@ pub fn prepare_motion(
         let order = particles.order.clone();
         let unpinned = |&i: &u32| !particles.is_pinned(order.given(i) as usize);
         let wanted = held.iter().copied().filter(unpinned);
-        if !wanted.clone().eq(particles.0.input.limited.iter().copied()) {
-            let wanted: Vec<u32> = wanted.collect();
-            particles.limit(wanted.into_iter());
+        let limited = particles.input.held.of(HolderKind::Limit);
+        // No memory is needed where nothing changed.
+        if !wanted.clone().eq(limited.iter().map(|held| held.particle)) {
+            let by = HeldBy::Limit;
+            let wanted: Vec<Held> = wanted.map(|particle| Held { particle, by }).collect();
+            particles.0.hold(HolderKind::Limit, wanted);
             motion.disturbed = true;
-        }
-    }
-}
-
-impl ClothParticles {
-    /// Replaces the particles that motion constraints hold at their targets.
-    fn limit(&mut self, held: impl Iterator<Item = u32>) {
-        let any = !self.0.input.limited.is_empty();
-        self.0.input.limited.clear();
-        self.0.input.limited.extend(held);
-        if any || !self.0.input.limited.is_empty() {
-            self.0.update_inv_masses();
         }
     }
 }

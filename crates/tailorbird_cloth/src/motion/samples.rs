@@ -4,6 +4,7 @@ use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::{
+    held::HolderKind,
     memory::heap,
     particles::{Input, Particles, State},
 };
@@ -193,13 +194,12 @@ impl MotionState {
                     step_position,
                     ..
                 },
-            input: Input {
-                inv_mass, limited, ..
-            },
+            input: Input { inv_mass, held, .. },
             ..
         } = &mut particles.0;
         let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
-        for i in free.chain(limited.iter().map(|&i| i as usize)) {
+        let limited = held.of(HolderKind::Limit).iter();
+        for i in free.chain(limited.map(|held| held.particle as usize)) {
             let way = end.get(i) - start.get(i);
             for points in [&mut *position, &mut *previous_position, &mut *step_position] {
                 points.add(i, way);

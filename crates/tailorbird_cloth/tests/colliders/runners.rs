@@ -86,3 +86,120 @@ fn both_runners_and_all_instruction_sets_give_the_same_bits() {
         "without vectors"
     );
 }
+
+/// A body that lies on a sheet between two posts keeps it awake, with systems of a game as without, and gets the same pushes.
+#[test]
+fn what_carries_a_body_stays_awake_either_way() {
+    let run = |own_stages: bool| {
+        let mut sheet = Sheet::new(&Scene {
+            resolution: UVec2::splat(17),
+            substeps: Some(12),
+            pins: ClothPins::edges([GridEdge::Left, GridEdge::Right]),
+            sleep: ClothSleep::default(),
+            ..Scene::default()
+        });
+        if own_stages {
+            sheet.app.add_systems(ClothSubstep, || {});
+        }
+        let entity = sheet.app.world_mut().spawn_empty().id();
+        let mut pushes = Vec::new();
+        for _ in 0..300 {
+            let at = Isometry3d::from_translation(Vec3::new(0.0, 0.0, 0.05));
+            let body = ColliderBody {
+                body: entity,
+                inv_mass: Vec3::splat(2.0),
+                inv_inertia: Mat3::IDENTITY * 20.0,
+                center_of_mass: at.translation.into(),
+                linear_velocity: Vec3::ZERO,
+                angular_velocity: Vec3::ZERO,
+            };
+            let mut colliders = sheet.app.world_mut().resource_mut::<ExternalColliders>();
+            colliders.push(ExternalCollider {
+                entity,
+                part: 0,
+                shape: ColliderShape::Sphere { radius: 0.2 },
+                friction: 0.5,
+                margin: 0.0,
+                layers: ClothLayers::ALL,
+                start: at,
+                end: at,
+                body: Some(body),
+            });
+            sheet.steps(1);
+            let reactions = sheet.app.world().resource::<ClothReactions>();
+            let impulse = reactions.get(entity).map(|reaction| reaction.impulse);
+            pushes.push(impulse.map(|impulse| impulse.to_array().map(f32::to_bits)));
+        }
+        let rest = sheet.app.world().get::<ClothRest>(sheet.entity);
+        (pushes, rest.is_some_and(ClothRest::is_asleep))
+    };
+    let (whole, asleep) = run(false);
+    assert!(!asleep && whole.last().is_some_and(Option::is_some));
+    let (staged, asleep) = run(true);
+    assert!(!asleep, "asleep it pushes no more");
+    let differs = whole.iter().zip(&staged).position(|(a, b)| a != b);
+    assert_eq!(differs, None, "first step that differs");
+}
+
+/// What wakes a cloth is met in the same step, with systems of a game as without.
+#[test]
+fn what_wakes_a_cloth_is_met_at_once_either_way() {
+    let run = |own_stages: bool| {
+        let mut sheet = Sheet::new(&Scene {
+            resolution: UVec2::splat(17),
+            substeps: Some(8),
+            pins: ClothPins::edges([
+                GridEdge::Left,
+                GridEdge::Right,
+                GridEdge::Top,
+                GridEdge::Bottom,
+            ]),
+            sleep: ClothSleep::default(),
+            gravity: Vec3::ZERO,
+            ..Scene::default()
+        });
+        if own_stages {
+            sheet.app.add_systems(ClothSubstep, || {});
+        }
+        // So that the list of colliders has something at its places.
+        for x in [-5.0, -6.0, -7.0] {
+            let far = Transform::from_xyz(x, 0.0, 0.0);
+            sheet
+                .app
+                .world_mut()
+                .spawn((ClothCollider::sphere(0.1), far));
+        }
+        sheet.steps(240);
+        let asleep = |sheet: &Sheet| {
+            let rest = sheet.app.world().get::<ClothRest>(sheet.entity);
+            rest.is_some_and(ClothRest::is_asleep)
+        };
+        assert!(asleep(&sheet));
+        let at = Transform::from_xyz(0.1, 0.05, -0.15);
+        sheet
+            .app
+            .world_mut()
+            .spawn((ClothCollider::sphere(0.2), at));
+        let mut bits = Vec::new();
+        for _ in 0..20 {
+            sheet.steps(1);
+            let particles = sheet
+                .app
+                .world()
+                .get::<ClothParticles>(sheet.entity)
+                .expect("particles");
+            bits.push(
+                particles
+                    .positions()
+                    .map(|p| p.to_array().map(f32::to_bits))
+                    .collect::<Vec<_>>(),
+            );
+        }
+        assert!(!asleep(&sheet));
+        bits
+    };
+    let (whole, staged) = (run(false), run(true));
+    assert_ne!(whole.first(), whole.last());
+    let differs = whole.iter().zip(&staged).position(|(a, b)| a != b);
+    assert_eq!(differs, None, "first step that differs");
+}

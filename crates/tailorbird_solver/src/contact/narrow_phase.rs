@@ -217,8 +217,8 @@ impl MovingCollider {
         }
         particles.state.touch.colliders += usize::from(touches && phase == Phase::Approach);
         particles.state.touch.overlaps |= overlaps.load(Ordering::Relaxed);
-        if let Some(held) = particles.input.grabbed {
-            self.collide_held(held.particle as usize, &motion, margin, particles, cache);
+        if let Some((held, _)) = particles.input.held.in_hand() {
+            self.collide_held(held as usize, &motion, margin, particles, cache);
         }
     }
 

@@ -163,11 +163,11 @@ impl Pass<'_> {
         }
         let slack = self.slack() * (1.0 + particles.state.grant.largest());
         // A hand does not pull the cloth further from its pins than it reaches.
-        if let Some(held) = particles.input.grabbed {
-            let i = held.particle as usize;
+        if let Some((held, _)) = particles.input.held.in_hand() {
+            let i = held as usize;
             let position = &mut particles.state.position;
             let from = position.get(i);
-            position.set(i, tethers.reached(held.particle, from, position, slack));
+            position.set(i, tethers.reached(held, from, position, slack));
         }
         let all = particles.len();
         let (level, workers) = (self.level, self.workers);

@@ -46,7 +46,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             Input {
                 acceleration,
                 inv_mass,
-                pins,
+                held,
                 ..
             },
         ..
@@ -61,10 +61,10 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             inv_mass,
         );
     }
-    for pin in pins.iter() {
-        let i = pin.particle as usize;
+    for (pin, place) in held.pins() {
+        let i = pin as usize;
         let from = position.get(i);
-        position.set(i, from + (pin.target - from) / substep.left() as f32);
+        position.set(i, from + (place - from) / substep.left() as f32);
     }
     particles.move_grabbed(topology, substep.left(), seconds);
     particles.state.substep_seconds = seconds;
