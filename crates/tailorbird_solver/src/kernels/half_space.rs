@@ -6,10 +6,9 @@ use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    contact::{Path, Touching},
+    contact::Touching,
     lanes::{V3, each_window},
 };
-use crate::points::Points;
 
 /// A half-space during one substep, in the frame of the particles.
 #[derive(Clone, Copy, Debug)]
@@ -87,24 +86,4 @@ fn collide_all_with<S: Simd>(
         },
     );
     any
-}
-
-/// Keeps one particle out of a half-space; returns whether it touches.
-#[inline]
-pub fn collide_one(
-    plane: &MovingHalfSpace,
-    i: usize,
-    position: &mut Points,
-    previous: &mut Points,
-) -> bool {
-    let to = position.get(i) - plane.to;
-    let depth = plane.margin - plane.normal.dot(to);
-    if depth <= 0.0 {
-        return false;
-    }
-    let from = previous.get(i) - plane.from;
-    let path = Path { from, to }.resolve(plane.normal, depth, plane.friction, Vec3::ZERO);
-    position.set(i, path.to + plane.to);
-    previous.set(i, path.from + plane.from);
-    true
 }
