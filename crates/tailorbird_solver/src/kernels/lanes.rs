@@ -56,6 +56,11 @@ impl<'a> Shared<'a> {
     }
 
     #[inline(always)]
+    pub fn is_empty(self) -> bool {
+        self.len == 0
+    }
+
+    #[inline(always)]
     pub fn load<S: Simd>(self, simd: S, i: usize) -> S::f32s {
         debug_assert!(i + S::f32s::LEN <= self.len, "lanes out of range");
         // SAFETY: in range, and no other task writes these elements now.
