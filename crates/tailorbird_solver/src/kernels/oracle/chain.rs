@@ -238,19 +238,43 @@ fn compare(case: &Case) -> Result<[usize; 2], TestCaseError> {
 proptest! {
     #![proptest_config(cases(60))]
 
+    /// Far too wide, on surfaces that differ: what is in contact moves along its own alone, the joints of rings as well.
+    #[test]
+    fn rings_leave_no_surface(normals in prop::collection::vec(vector(1.0), 184), wide in 1.5_f32..3.0) {
+        let topology = tubes();
+        let wider = Vec3::new(wide, 1.0, wide);
+        let position: Vec<Vec3> = topology.rest_positions.iter().map(|p| p * wider).collect();
+        let normals: Vec<Vec3> = normals.into_iter().map(Vec3::normalize_or_zero).collect();
+        let case = Case {
+            position, inv_mass: vec![1.0; 184], normal: Some(normals.clone()), stretch: 0.0, give: Give::default(), topology: &topology,
+        };
+        for batch in 0..topology.fabric.as_ref().expect("no grid").chains().batches.len() {
+            for (i, is) in case.solved(batch).into_iter().enumerate() {
+                let moved = is - case.position[i].as_dvec3();
+                prop_assert!(moved.dot(normals[i].as_dvec3()).abs() < 1e-4, "{i}: {moved}");
+            }
+        }
+    }
+
     #[test]
     fn rings_and_open_chains_are_solved_as_stated(
         off in prop::collection::vec(vector(0.2), 184), w in prop::collection::vec(prop_oneof![1 => Just(0.0), 9 => 0.2_f32..2.0], 184),
         normals in prop::option::of(prop::collection::vec(prop_oneof![2 => Just(Vec3::ZERO), 1 => vector(1.0)], 184)),
-        wide in 0.8_f32..1.8, stretch in prop_oneof![Just(0.0_f32), 1e-3_f32..1.0], bounded in any::<bool>(),
+        wide in 0.8_f32..1.8, stretch in prop_oneof![Just(0.0_f32), 1e-3_f32..1.0], bounded in any::<[bool; 2]>(),
     ) {
         let topology = tubes();
         let wider = Vec3::new(wide, 1.0, wide);
         // On surfaces little enough that edges bear their tension.
         let (noise, wider) = if normals.is_some() { (0.2, Vec3::ONE) } else { (1.0, wider) };
         let position = topology.rest_positions.iter().zip(off).map(|(p, off)| p * wider + noise * off);
-        let default = Give::default();
-        let give = if bounded { Give { pull: 5.0, push: 1.3, compliance: 0.01 } } else { default };
+        let [pull, push] = bounded;
+        let mut give = Give { compliance: 0.01, ..Give::default() };
+        if pull {
+            give.pull = 5.0;
+        }
+        if push {
+            give.push = 1.3;
+        }
         let normal = normals.map(|all| all.into_iter().map(Vec3::normalize_or_zero).collect());
         let case = Case { position: position.collect(), inv_mass: w, normal, stretch, give, topology: &topology };
         let [rings, open] = compare(&case)?;

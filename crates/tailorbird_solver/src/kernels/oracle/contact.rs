@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicBool;
 use bevy_math::{DVec3, Vec3};
 use proptest::prelude::*;
 
-use super::vector;
+use super::{cases, vector};
 use crate::{
     kernels::{
-        contact::{Out, Phase, Touching},
+        contact::{Out, Path, Phase, Touching},
         lanes::{Shared, SharedPoints},
     },
     numbers::Numbers,
@@ -275,4 +275,25 @@ pub(super) fn meeting(
         });
     }
     Verdict::Free
+}
+
+proptest! {
+    #![proptest_config(cases(1000))]
+
+    /// One particle by itself: as those side by side in the final phase, with nothing noted.
+    #[test]
+    fn one_path_is_resolved_as_stated(
+        from in vector(1.0), to in vector(1.0), normal in vector(1.0), depth in 0.0_f32..0.5, friction in 0.0_f32..2.0, surface in vector(0.3),
+    ) {
+        prop_assume!(normal.length() > 0.1);
+        let normal = normal.normalize();
+        let alone = Particles { from: vec![from], to: vec![to], noted: None, phase: Phase::Final, most: f32::INFINITY };
+        let meeting = Meeting {
+            from: from.as_dvec3(), to: to.as_dvec3(), normal: normal.as_dvec3(), depth: depth.into(), depth_at_start: 0.0, surface: surface.as_dvec3(),
+        };
+        let wanted = alone.resolved(0, meeting, friction);
+        let is = Path { from, to }.resolve(normal, depth, friction, surface);
+        prop_assert!(is.from.as_dvec3().distance(wanted.from) < 3e-6);
+        prop_assert!(is.to.as_dvec3().distance(wanted.to) < 3e-6);
+    }
 }

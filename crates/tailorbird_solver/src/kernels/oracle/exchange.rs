@@ -9,7 +9,7 @@ use crate::{
     topology::{Topology, test_meshes::delaunay},
 };
 
-/// x⁻ of a mesh moves by −w Σ c (v_j − v), c = σ · weight · the least of viscosity and what an edge stands.
+/// Of a mesh x⁻ moves by −w c times the difference to each neighbour, c = σ · weight · the least of viscosity and what an edge stands.
 #[test]
 fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let (positions, triangles) = delaunay(12, 3);
@@ -26,17 +26,19 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
         .iter()
         .map(|exchange| f64::from(exchange.limit));
     let middle = limits.sum::<f64>() / fabric.exchanges().len() as f64;
+    // So far away that x⁻ is rounded to 6 · 10⁻⁵, and velocities are not.
+    let far = Vec3::splat(1000.0);
     // Where none, some and all of the edges stand no more.
     for viscosity in [1e-2, 1.0, 1e3].map(|part| (part * middle) as f32) {
         for rigid in [
             RigidMotion::default(),
             RigidMotion {
-                center: Vec3::new(0.5, 0.2, 0.1),
+                center: far + Vec3::new(0.5, 0.25, 0.125),
                 displacement: Vec3::new(0.01, 0.02, -0.03),
                 rotation: Vec3::new(0.02, -0.01, 0.03),
             },
         ] {
-            let position: Points = topology.rest_positions.iter().copied().collect();
+            let position: Points = topology.rest_positions.iter().map(|p| far + p).collect();
             let start: Points = position
                 .iter()
                 .enumerate()
@@ -76,7 +78,8 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
                 // What x⁻ moves by, with what rounding took from it.
                 let moved = start.get(i).as_dvec3() - previous.get(i).as_dvec3();
                 let is = moved + lost.get(i).as_dvec3();
-                assert!(is.distance(wanted) < 1e-6, "{i}: {is} {wanted}");
+                assert!(moved.distance(wanted) < 2e-4, "{i}: {moved} {wanted}");
+                assert!(is.distance(wanted) < 2e-6, "{i}: {is} {wanted}");
             }
             assert!(largest > 1e-4, "{viscosity}: {largest}");
         }

@@ -2,6 +2,7 @@
 //!
 //! Constants stand here as numbers once more: one that is changed is a change of what is solved.
 
+mod air;
 mod chain;
 mod contact;
 mod exchange;
@@ -16,6 +17,8 @@ mod shear;
 mod solid;
 mod sphere;
 mod surface;
+mod survey;
+mod swept;
 mod tether;
 mod viscosity;
 

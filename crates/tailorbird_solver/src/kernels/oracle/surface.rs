@@ -91,10 +91,10 @@ proptest! {
             margin,
             friction,
         };
-        for i in 0..particles.from.len() {
-            patches.set(i, planes[i].1, plane(i).normal, Vec3::ZERO, 1.0);
-            let height = plane(i).normal.dot(particles.to[i] - planes[i].1);
-            prop_assert!((patches.height(i, particles.to[i]) - height).abs() < 1e-6);
+        for (i, to) in particles.to.iter().enumerate() {
+            let MovingHalfSpace { from, normal, .. } = plane(i);
+            patches.set(i, from, normal, Vec3::ZERO, 1.0);
+            prop_assert!((patches.height(i, *to) - normal.dot(to - from)).abs() < 1e-6);
         }
         let seen = Seen { patches: &patches, margin };
         let motion = Motion { from: Vec3::ZERO, to: Vec3::ZERO, axes: Mat3::IDENTITY, turn: Mat3::IDENTITY, friction };

@@ -81,7 +81,7 @@ impl Moving {
         all.filter(|(is, _)| *is).map(|(_, j)| j).collect()
     }
 
-    /// d (x − x⁻ + w κ Σ (v_j − v)) + a h² of what is free, d = e^(−damping · h).
+    /// d (x − x⁻ + w κ Σ (v′ − v)) + a h² of what is free, d = e^(−damping · h).
     fn wanted(&self, i: usize) -> DVec3 {
         let w = f64::from(self.cloth.inv_mass[i]);
         if w == 0.0 {
