@@ -75,7 +75,7 @@ pub(crate) fn simulate_cloths(
         wind.blow(&step, workers, cloth);
         let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
         let nth = |index| step.nth_of(index, count, workers);
-        cloth.solve(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
+        cloth.with_cloth(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
         cloth.guard(&commands);
         cloth.settle(&step, &colliders);
         cloth.recompute_normals(step.level(), workers);

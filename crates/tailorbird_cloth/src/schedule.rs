@@ -10,9 +10,9 @@ use crate::{diagnostics::ClothStepTime, step::ClothStep};
 pub enum ClothSystems {
     /// Builds new cloths, reads transforms, colliders, pins, wind and forces.
     Prepare,
-    /// Runs [`ClothSubstep`] once per substep.
+    /// Runs [`ClothSubstep`] once per substep, and guards the state.
     Simulate,
-    /// Guards the state; computes normals and bounds.
+    /// Computes normals and bounds; lets cloths fall asleep.
     Writeback,
 }
 

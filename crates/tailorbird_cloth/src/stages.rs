@@ -47,7 +47,7 @@ pub struct ClothStages {
 
 impl ClothStagesItem<'_, '_> {
     /// Calls `f` with the cloth as the solver has it.
-    pub(crate) fn solve<R>(&mut self, f: impl FnOnce(&mut solver::cloth::Cloth) -> R) -> R {
+    pub(crate) fn with_cloth<R>(&mut self, f: impl FnOnce(&mut solver::cloth::Cloth) -> R) -> R {
         let coefficients = self.material.coefficients();
         f(&mut solver::cloth::Cloth {
             topology: self.topology,
@@ -73,7 +73,7 @@ pub(crate) fn run_stage(
 ) {
     let substep = step.in_progress();
     for_each_awake(step, cloths, &|mut item| {
-        item.solve(|cloth| (stage.run)(&substep, &colliders.list, cloth));
+        item.with_cloth(|cloth| stage(&substep, &colliders.list, cloth));
     });
 }
 

@@ -15,7 +15,7 @@ use crate::{
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
 ///
-/// Written by [`begin_step`] and [`run_substeps`](crate::schedule::run_substeps) alone.
+/// Written by [`begin_step`], [`plan_substeps`] and [`run_substeps`](crate::schedule::run_substeps) alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothStep {
@@ -82,8 +82,8 @@ impl ClothStep {
         self.seconds / self.substeps.max(1) as f32
     }
 
-    /// How many substeps the cloth takes that takes most; all do where a game has systems of its own in
-    /// [`ClothSubstep`](crate::schedule::ClothSubstep).
+    /// The largest number of substeps of any cloth. Where a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep),
+    /// every cloth takes this many.
     pub fn substeps(&self) -> u32 {
         self.substeps
     }
@@ -91,11 +91,6 @@ impl ClothStep {
     /// The substep in progress, from 0.
     pub fn substep(&self) -> u32 {
         self.substep
-    }
-
-    /// How many substeps are left, the one in progress included.
-    pub fn substeps_left(&self) -> u32 {
-        self.substeps.saturating_sub(self.substep).max(1)
     }
 
     /// How much of the step has passed at the end of the substep in progress, 0 to 1.

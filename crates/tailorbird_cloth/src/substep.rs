@@ -56,6 +56,7 @@
 use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
 use bevy_math::{Mat3, Vec3};
 use tailorbird_solver::{
+    contact::colliders::combined_friction,
     kernels::contact::Path,
     particles::{Input, Particles, Scratch, State},
 };
@@ -277,8 +278,9 @@ impl<'w> SubstepCloth<'w> {
         free
     }
 
-    /// Before the constraints are solved: pushes free particles out of surfaces, without friction, and notes what they touch. `contact` gets a
-    /// particle's place.
+    /// Before the constraints are solved, in [`ClothSubstepSystems::Approach`](crate::schedule::ClothSubstepSystems::Approach) and after
+    /// [`find_contacts`](crate::collider::find_contacts), which forgets what was noted before: pushes free particles out of surfaces, without
+    /// friction, and notes what they touch. `contact` gets a particle's place.
     ///
     /// A particle that touches something already keeps to that.
     pub fn approach(&mut self, contact: impl Fn(Vec3) -> Option<SubstepContact>) {
@@ -323,7 +325,7 @@ impl<'w> SubstepCloth<'w> {
             if contact.depth + before <= 0.0 {
                 continue;
             }
-            let friction = (contact.friction * self.material.friction).max(0.0).sqrt();
+            let friction = combined_friction(contact.friction, self.material.friction);
             let most = friction * (contact.depth + before);
             self.resolve(i, normal, contact, most);
         }

@@ -1,4 +1,4 @@
-//! Checks: of shapes when they are built, of the state after each step.
+//! Checks the state after each step.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;

@@ -1,5 +1,5 @@
 //! The scenes of `headless` that ask for more than the fabric has, or do to it what games do every day: whatever is asked, cloth ends in rest.
-//! The bounds are what was measured, with room for other machines; `src/solver/kernels/README.md` has the figures.
+//! The bounds are what was measured, with room for other machines; `crates/tailorbird_solver/src/kernels/README.md` has the figures.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 

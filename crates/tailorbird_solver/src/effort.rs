@@ -1,15 +1,15 @@
 //! Whether a cloth is asked for more than its fabric has.
 //!
 //! Posts that stand too far apart, a body that is put into a curtain: no number of substeps makes that right. While many edges are longer
-//! than the fabric lets them be, its lines give way (`solver/give.rs`), and what moves by their pull moves slowly, as seen from what holds
-//! it, so that stretch comes back without becoming speed (`slowing.rs`).
+//! than the fabric lets them be, its lines give way (`solve/give.rs`), and what moves by their pull moves slowly, as seen from what holds
+//! it, so that stretch comes back without becoming speed (`solve/slowing.rs`).
 
 use bevy_math::Isometry3d;
 use bevy_reflect::prelude::*;
 
 use crate::kernels::contact::Touch;
 
-/// How it stands with what a cloth is asked for, as was seen at the end of the step before.
+/// Whether more is asked of a cloth than its fabric has, and for how long, as was seen at the end of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct Effort {
     /// The part of the edges that is longer than the fabric lets them be [-].

@@ -33,7 +33,7 @@ pub struct Frame {
     pub jump: Option<Isometry3d>,
 }
 
-/// How what does not follow the frame by itself came from the frame as it was into the frame as it is.
+/// How free particles were expressed anew when the frame moved in this substep.
 #[derive(Clone, Copy, Debug)]
 pub struct Taken {
     /// How the frame was turned, and how far from where the step began.

@@ -43,7 +43,7 @@ pub struct Holder {
     pub jumped: Option<Pose>,
     /// What of its way in this step is too sudden for the cloth to feel \[m\].
     pub excess: Vec3,
-    /// Whether it was put elsewhere by somebody who said so, and has no way in this step that tells how fast it is.
+    /// Whether it was teleported on request, and is otherwise still in this step: its velocity is not known.
     pub told: bool,
     /// What its springs pulled with, summed over the substeps, in world axes \[N\].
     pub pulled: Vec3,

@@ -4,9 +4,11 @@
 //! version to the next. Here are
 //!
 //! - the rest shape and what is computed from it once: [`shape`], [`topology`];
-//! - arrays of particles: [`points`], [`numbers`];
-//! - the arithmetic, one file for each equation, which no documentation lists: `kernels`, explained in `kernels/README.md`;
-//! - several threads at one cloth: `workers`.
+//! - a cloth in a step: [`particles`] (state, input, scratch, as arrays of [`points`] and [`numbers`]), [`frame`], what holds it, colliders, wind;
+//! - `step`: the loop over substeps, and the table of their stages;
+//! - the arithmetic, one file for each equation, explained in `kernels/README.md`.
+//!
+//! Modules that no documentation lists are public for `tailorbird_cloth` alone.
 //!
 //! Units are metres, kilograms and seconds.
 

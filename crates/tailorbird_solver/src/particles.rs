@@ -94,7 +94,7 @@ pub struct Scratch {
     pub contacts: Contacts,
     /// What is known of the colliders around.
     pub cache: ContactCache,
-    /// Multipliers of the constraints.
+    /// Numbers of a stage: multipliers of the classic solver, rows at seams, lengths.
     pub lambda: Vec<f32>,
 }
 

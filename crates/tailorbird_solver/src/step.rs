@@ -12,52 +12,29 @@ use crate::{
     substep::Substep,
 };
 
-/// A stage of a substep.
-pub struct Stage {
-    /// What it is called.
-    pub name: &'static str,
-    /// What it does to a cloth.
-    pub run: fn(&Substep, &Colliders, &mut Cloth),
-}
+/// A stage of a substep: what it does to a cloth.
+pub type Stage = fn(&Substep, &Colliders, &mut Cloth);
 
 /// The stages of a substep, in their order.
 pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, CALM];
 
 /// Moves the frame, and with it what is held by others.
-pub const ADVANCE: Stage = Stage {
-    name: "advance",
-    run: |substep, _, cloth| advance(substep, cloth),
-};
+pub const ADVANCE: Stage = |substep, _, cloth| advance(substep, cloth);
 
 /// Moves particles by inertia, gravity, wind and forces.
-pub const INTEGRATE: Stage = Stage {
-    name: "integrate",
-    run: |substep, _, cloth| solve::integrate(substep, cloth),
-};
+pub const INTEGRATE: Stage = |substep, _, cloth| solve::integrate(substep, cloth);
 
 /// Pushes particles out of colliders, and notes what they touch.
-pub const APPROACH: Stage = Stage {
-    name: "approach",
-    run: |substep, colliders, cloth| colliders.approach(substep, cloth),
-};
+pub const APPROACH: Stage = |substep, colliders, cloth| colliders.approach(substep, cloth);
 
 /// Holds the constraints.
-pub const SOLVE: Stage = Stage {
-    name: "solve",
-    run: |substep, _, cloth| solve::solve(substep, cloth),
-};
+pub const SOLVE: Stage = |substep, _, cloth| solve::solve(substep, cloth);
 
 /// Keeps particles out of colliders, with friction.
-pub const COLLIDE: Stage = Stage {
-    name: "collide",
-    run: |substep, colliders, cloth| colliders.collide_all(substep, cloth),
-};
+pub const COLLIDE: Stage = |substep, colliders, cloth| colliders.collide_all(substep, cloth);
 
 /// Damps what is tangled, at the end of the last substep, and looks at what the cloth is asked for.
-pub const CALM: Stage = Stage {
-    name: "calm",
-    run: |substep, _, cloth| solve::calm(substep, cloth),
-};
+pub const CALM: Stage = |substep, _, cloth| solve::calm(substep, cloth);
 
 /// Takes a cloth through all substeps of a step; `nth` tells what the substep of this index is told.
 pub fn step<'a>(
@@ -69,7 +46,7 @@ pub fn step<'a>(
     for index in 0..count {
         let substep = nth(index);
         for stage in STAGES {
-            (stage.run)(&substep, colliders, cloth);
+            stage(&substep, colliders, cloth);
         }
     }
 }

@@ -100,7 +100,7 @@ impl Workers<'_> {
 }
 
 impl Queue {
-    /// Calls as many helpers as the pool has threads, but for the one that leads, while `lead` runs with them as its crew.
+    /// Calls as many helpers as the pool has threads, but for the one that leads, while `lead` runs with them as its workers.
     pub fn open(lead: impl FnOnce(Workers)) {
         let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
         Self::open_for(threads, lead);

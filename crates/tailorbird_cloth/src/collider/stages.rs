@@ -32,7 +32,7 @@ macro_rules! collide_systems {
             ) {
                 let substep = step.in_progress();
                 for_each_awake(&step, &mut cloths, &|mut cloth| {
-                    cloth.solve(|cloth| {
+                    cloth.with_cloth(|cloth| {
                         (colliders.list).collide(Phase::Final, Some(&[Kind::$kind]), &substep, cloth);
                     });
                 });

@@ -1,4 +1,4 @@
-//! Reads motion constraints and their targets at the start of a step, and holds them in each substep.
+//! Reads motion constraints and their targets at the start of a step.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;

@@ -118,12 +118,12 @@ pub struct ClothRest {
     asleep: Option<u64>,
     /// What it settles or sleeps in.
     #[reflect(ignore)]
-    around: Option<ContactCache>,
+    around: Option<Surroundings>,
 }
 
 /// What acts on a cloth from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct ContactCache {
+struct Surroundings {
     gravity: Vec3,
     substeps: Option<u32>,
     iterations: u32,
@@ -195,7 +195,7 @@ fn around(
     (frame, bounds): (&ClothFrame, &ClothBounds),
     layers: Option<&ClothLayers>,
     material: &ClothMaterial,
-) -> ContactCache {
+) -> Surroundings {
     let mut hasher = DefaultHasher::new();
     let room = ROOM + material.margin().max(0.0);
     for collider in colliders.list.near(
@@ -206,7 +206,7 @@ fn around(
     ) {
         collider.hash(&mut hasher);
     }
-    ContactCache {
+    Surroundings {
         gravity: step.gravity(),
         substeps: step.fixed_substeps,
         iterations: step.iterations(),
@@ -269,7 +269,7 @@ pub fn wake_cloths(
             || frame.jump_turn().is_some_and(turned)
             || attached.is_disturbed()
             || motion.is_some_and(MotionState::is_disturbed);
-        let other = |known: ContactCache| {
+        let other = |known: Surroundings| {
             known != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
         };
         let disturbed = changed || pulled || rest.around.is_some_and(other);

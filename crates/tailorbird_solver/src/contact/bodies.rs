@@ -162,7 +162,7 @@ pub struct Struck<'a> {
 /// A particle in contact with a body, which carries a part of it along the normal while the constraints are solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Coupling {
-    /// The collider: its entity, and which of the entity's.
+    /// The collider.
     pub collider: ColliderId,
     /// Which of the bodies of the step.
     pub body: usize,

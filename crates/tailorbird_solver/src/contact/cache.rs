@@ -12,7 +12,7 @@ use crate::{
 pub struct ContactCache {
     /// Those that are near, as places in the list of colliders.
     pub near: Vec<usize>,
-    /// Where the list holds, in the world \[m\].
+    /// The box within which `near` is complete, as long as the cloth stays inside it, in the world \[m\].
     pub holds: Option<(Vec3, Vec3)>,
     /// The stage that the boxes of blocks were found in: which substep, and whether its constraints are solved.
     pub stage: Option<(u32, bool)>,

@@ -24,7 +24,7 @@ use crate::{
 };
 
 impl Colliders {
-    /// What [`find_contacts`] does for one cloth.
+    /// Pushes particles out of colliders before the constraints are solved, and notes what they touch.
     pub fn approach(&self, substep: &Substep, cloth: &mut Cloth) {
         let particles = &mut *cloth.particles;
         let bodies = &mut particles.scratch.cache.bodies;
@@ -54,7 +54,8 @@ impl Colliders {
         self.collide(Phase::Final, Some(&Kind::ALL), substep, cloth);
     }
 
-    /// Keeps the particles of one cloth out of all colliders, in the order of their list, or out of those of some kinds, kind by kind.
+    /// Keeps the particles of one cloth out of colliders: with `kinds` out of those, kind by kind, as the systems of an ECS do it; without out of
+    /// all, in the order of their list.
     pub fn collide(
         &self,
         phase: Phase,

@@ -26,7 +26,7 @@ impl fmt::Debug for Solid {
     }
 }
 
-/// Which system keeps particles out of it.
+/// What kind of solid it is: one kind is solved after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Sphere,

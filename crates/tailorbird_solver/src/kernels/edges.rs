@@ -4,7 +4,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::lanes::{Shared, WIDEST};
 
-/// What the lines of a sheet resist with; those at its border, which stand for half a strip, with half of it.
+/// Compliances of the lines of a sheet. Lines at the border stand for half a strip, and are twice as compliant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStiffness {
     /// L \[m\].

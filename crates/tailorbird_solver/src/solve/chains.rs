@@ -332,7 +332,7 @@ pub fn integrate(
     false
 }
 
-/// Moves a sheet, in blocks of rows, one for each part of the crew.
+/// Moves a sheet, in blocks of rows, one for each part of the workers.
 fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
     let (level, workers) = (substep.level, substep.workers);
     let rows = motion.sheet.rows;
