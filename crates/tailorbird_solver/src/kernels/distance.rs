@@ -177,6 +177,8 @@ mod tests {
             solve_rigid(&[[0, 1]], &[rest], &[w_a, w_b], &mut position);
             let (a2, b2) = (position.get(0), position.get(1));
             prop_assert!((a2.distance(b2) - rest).abs() < 1e-4);
+            // Neither goes through the other.
+            prop_assert!((b2 - a2).dot(b - a) > 0.0);
             let shift = (a2 - a) / w_a + (b2 - b) / w_b;
             prop_assert!(shift.length() < 1e-4 * (1.0 / w_a + 1.0 / w_b) * 10.0);
         }

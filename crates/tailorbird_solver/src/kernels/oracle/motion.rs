@@ -9,7 +9,9 @@ use crate::{
     kernels::{
         lanes::{Shared, SharedPoints},
         limit::{self, Backstop, Limits},
-        normals, rigid, spring,
+        normals, rigid,
+        rigid_motion::RigidMotion,
+        spring,
         verlet::Verlet,
     },
     points::Points,
@@ -151,6 +153,29 @@ proptest! {
         let mut vectors = points(&[place]);
         rigid::rotate(Mat3::from_quat(rotation), &mut vectors);
         prop_assert!(vectors.get(0).as_dvec3().distance(moved(place) - shift.as_dvec3()) < 1e-5);
+    }
+
+    /// Whatever the shape and its axes: the motion that all particles have is that of the whole.
+    #[test]
+    fn the_motion_of_a_rigid_whole_is_found(
+        places in prop::collection::vec((vector(1.0), 0.1_f32..2.0), 8..30), size in [0.2_f32..2.0, 0.2_f32..2.0, 0.2_f32..2.0],
+        axes in vector(3.0), shift in vector(5.0), displacement in vector(0.1), rotation in vector(0.1),
+    ) {
+        let axes = Quat::from_scaled_axis(axes);
+        let position: Points = places.iter().map(|(p, _)| axes * (*p * Vec3::from(size)) + shift).collect();
+        let mass: Vec<f32> = places.iter().map(|(_, mass)| *mass).collect();
+        let total: f64 = mass.iter().map(|m| f64::from(*m)).sum();
+        let center = position.iter().zip(&mass).map(|(p, m)| p.as_dvec3() * f64::from(*m)).sum::<DVec3>() / total;
+        let moved = |p: Vec3| displacement.as_dvec3() + rotation.as_dvec3().cross(p.as_dvec3() - center);
+        let previous: Points = position.iter().map(|p| (p.as_dvec3() - moved(p)).as_vec3()).collect();
+        let found = RigidMotion::of_all(&mass, &position, &previous);
+        // Places are rounded to 5 · 10⁻⁷, against an extent of 0.05 at least.
+        prop_assert!(found.center.as_dvec3().distance(center) < 1e-6);
+        prop_assert!(found.displacement.distance(displacement) < 1e-6, "{found:?}");
+        prop_assert!(found.rotation.distance(rotation) < 2e-5, "{found:?} {rotation}");
+        for p in position.iter() {
+            prop_assert!(found.at(p).as_dvec3().distance(moved(p)) < 1e-4);
+        }
     }
 
     /// ω² r away from the axis.

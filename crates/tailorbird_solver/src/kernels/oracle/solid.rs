@@ -16,6 +16,7 @@ use super::{
 use crate::kernels::{
     ball::{Ball, Ground},
     capsule::Capsule,
+    contact::Phase,
     cuboid::Cuboid,
     cylinder::Cylinder,
     solid::{Motion, Solid, collide_all, nearest},
@@ -144,6 +145,15 @@ proptest! {
             let path = [-0.5, 0.5].map(|half| Vec3::new(way * half, 0.997, 0.0) * radius);
             let contact = nearest(&Ball { radius }, &STILL, 0, path);
             prop_assert_eq!(contact.depth > 0.0, followed, "{} {}", way, contact.depth);
+            let both = Particles {
+                from: vec![path[0]; 2],
+                to: vec![path[1]; 2],
+                noted: None,
+                phase: Phase::Final,
+                most: f32::INFINITY,
+            };
+            let is = both.collide(|touching| collide_all(Level::new(), &Ball { radius }, &STILL, touching, 0..2));
+            prop_assert_eq!(is.any, followed);
         }
     }
 }

@@ -176,3 +176,28 @@ proptest! {
         prop_assert_eq!(found, wanted.chain([places.len()]).collect::<Vec<_>>());
     }
 }
+
+/// What lies on the last row or column belongs to the last cell.
+#[test]
+fn heights_end_with_those_of_the_last_corners() {
+    let heights: Vec<f32> = (0..9).map(|i| 0.1 * (i * i) as f32).collect();
+    let terrain = Terrain {
+        heights: &heights,
+        resolution: UVec2::splat(3),
+        cell: Vec2::ONE,
+        stretch: 1.0,
+        margin: 0.0,
+    };
+    for (i, height) in heights.iter().enumerate() {
+        let p = Vec3::new((i % 3) as f32 - 1.0, *height, (i / 3) as f32 - 1.0);
+        let motion = Motion {
+            from: Vec3::ZERO,
+            to: Vec3::ZERO,
+            axes: Mat3::IDENTITY,
+            turn: Mat3::IDENTITY,
+            friction: 0.0,
+        };
+        let contact = solid::nearest(&terrain, &motion, 0, [p, p]);
+        assert!(contact.depth.abs() < 1e-6, "{i}: {}", contact.depth);
+    }
+}

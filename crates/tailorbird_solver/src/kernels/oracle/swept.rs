@@ -118,6 +118,9 @@ fn a_path_is_followed_from_the_surface_on() {
         let path = [Vec3::X * (2.0 - 2.0 * below), Vec3::X * -5.0];
         let contact = nearest(&Ball { radius: 2.0 }, &STILL, 0, path);
         assert_eq!(contact.depth > 0.0, followed, "{below}: {}", contact.depth);
+        // It ends on the surface, and not where it began.
+        let end = path[1].x + contact.normal.x * contact.depth;
+        assert_eq!((end - 2.0).abs() < 2e-6, followed, "{below}: {end}");
     }
 }
 
