@@ -188,16 +188,24 @@ fn heights_end_with_those_of_the_last_corners() {
         stretch: 1.0,
         margin: 0.0,
     };
+    let motion = Motion {
+        from: Vec3::ZERO,
+        to: Vec3::ZERO,
+        axes: Mat3::IDENTITY,
+        turn: Mat3::IDENTITY,
+        friction: 0.0,
+    };
     for (i, height) in heights.iter().enumerate() {
         let p = Vec3::new((i % 3) as f32 - 1.0, *height, (i / 3) as f32 - 1.0);
-        let motion = Motion {
-            from: Vec3::ZERO,
-            to: Vec3::ZERO,
-            axes: Mat3::IDENTITY,
-            turn: Mat3::IDENTITY,
-            friction: 0.0,
-        };
         let contact = solid::nearest(&terrain, &motion, 0, [p, p]);
         assert!(contact.depth.abs() < 1e-6, "{i}: {}", contact.depth);
+    }
+    // The plane at the border is that beside it.
+    for at in [Vec2::new(1.0, -0.5), Vec2::new(-0.5, 1.0)] {
+        let normal = |at: Vec2| {
+            let p = Vec3::new(at.x, 0.0, at.y);
+            solid::nearest(&terrain, &motion, 0, [p, p]).normal
+        };
+        assert!(normal(at).distance(normal(at * 0.999)) < 1e-6, "{at}");
     }
 }
