@@ -292,7 +292,7 @@ proptest! {
             from: from.as_dvec3(), to: to.as_dvec3(), normal: normal.as_dvec3(), depth: depth.into(), depth_at_start: 0.0, surface: surface.as_dvec3(),
         };
         let wanted = alone.resolved(0, meeting, friction);
-        let is = Path { from, to }.resolve(normal, depth, friction, surface);
+        let is = Path { from, to }.resolve(normal, depth, friction * depth, surface);
         prop_assert!(is.from.as_dvec3().distance(wanted.from) < 3e-6);
         prop_assert!(is.to.as_dvec3().distance(wanted.to) < 3e-6);
     }
