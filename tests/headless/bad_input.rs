@@ -121,7 +121,7 @@ fn resolutions() {
 fn origins() {
     check(
         (square(5).with_origin(Vec2::new(f32::NAN, 0.0)), far()),
-        |kind| matches!(kind, ClothErrorKind::Vector { .. }),
+        |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Origin { .. })),
         &["origin", "NaN", "finite"],
         mend_cloth,
     );
@@ -215,7 +215,7 @@ fn weld_distances() {
         };
         check(
             (Cloth { shape }, far()),
-            |kind| matches!(kind, ClothErrorKind::Value { .. }),
+            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::WeldDistance { .. })),
             &["weld_distance", &distance.to_string(), "at least 0"],
             mend_cloth,
         );
