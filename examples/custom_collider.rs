@@ -74,11 +74,16 @@ fn setup(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     commands.spawn((
-        Cloth::grid(Vec2::splat(2.0), UVec2::splat(64)).centered(),
+        Cloth::grid(Vec2::splat(1.7), UVec2::splat(56)).centered(),
         ClothMaterial::cotton(),
         // A torus is no collider of the crate: nothing would wake the cloth when it turns.
         ClothSleep::never(),
-        MeshMaterial3d(materials.add(Color::srgb(0.15, 0.35, 0.65))),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color: Color::srgb(0.15, 0.35, 0.65),
+            perceptual_roughness: 0.95,
+            reflectance: 0.2,
+            ..default()
+        })),
         Transform::from_xyz(0.0, 1.2, 0.0)
             .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)),
     ));

@@ -87,7 +87,7 @@ impl ClothDrawnHolds {
     pub const REACH: f32 = 0.6;
 
     /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
-    /// [`ClothParticles::interpolated`].
+    /// [`Particles::interpolated`](tailorbird_solver::particles::Particles::interpolated).
     #[inline]
     pub fn offset(&self, i: usize) -> Vec3 {
         if i < self.offsets.len() {
