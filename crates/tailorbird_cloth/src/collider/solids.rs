@@ -10,14 +10,24 @@ use tailorbird_solver::contact::{
 
 use super::ColliderShape;
 
-/// Hulls and meshes at the scales at which they are in use.
+/// Hulls and meshes at the scales at which they are in use, by the addresses of their shapes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Solids(BTreeMap<(usize, [u32; 3]), (u64, Option<Solid>)>);
+pub(super) struct Solids(BTreeMap<(usize, [u32; 3]), Kept>);
+
+/// A solid that is kept from step to step.
+#[derive(Clone, Debug)]
+struct Kept {
+    /// The step that used it last.
+    used: u64,
+    solid: Option<Solid>,
+    /// Held on to, so that no other shape gets its address.
+    _shape: ColliderShape,
+}
 
 impl Solids {
     /// What was not used in this step is forgotten.
     pub fn forget(&mut self, step: u64) {
-        self.0.retain(|_, (used, _)| *used == step);
+        self.0.retain(|_, kept| kept.used == step);
     }
 
     /// A shape at this scale; `None` where nothing is left of it.
@@ -58,13 +68,13 @@ impl Solids {
                 scale,
             },
             ColliderShape::ConvexHull(ref hull) => {
-                return self.kept(step, hull.id(), scale, || {
+                return self.kept(step, (hull.id(), shape), scale, || {
                     let hull = Hull::new(hull.points(), hull.triangles(), scale)?;
                     Some(Solid::Hull(Arc::new(hull)))
                 });
             }
             ColliderShape::TriMesh(ref mesh) => {
-                return self.kept(step, mesh.id(), scale, || {
+                return self.kept(step, (mesh.id(), shape), scale, || {
                     let surface = Surface::new(mesh.positions(), mesh.triangles(), scale)?;
                     Some(Solid::Mesh(Arc::new(surface)))
                 });
@@ -77,13 +87,41 @@ impl Solids {
     fn kept(
         &mut self,
         step: u64,
-        id: usize,
+        (id, shape): (usize, &ColliderShape),
         scale: Vec3,
         make: impl FnOnce() -> Option<Solid>,
     ) -> Option<Solid> {
         let key = (id, scale.to_array().map(f32::to_bits));
-        let (used, solid) = self.0.entry(key).or_insert_with(|| (step, make()));
-        *used = step;
-        solid.clone()
+        let kept = self.0.entry(key).or_insert_with(|| Kept {
+            used: step,
+            solid: make(),
+            _shape: shape.clone(),
+        });
+        kept.used = step;
+        kept.solid.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::TriMesh, *};
+
+    fn triangle(height: f32) -> ColliderShape {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p + Vec3::Y * height);
+        ColliderShape::TriMesh(TriMesh::new(corners, [[0, 2, 1]]).expect("a triangle"))
+    }
+
+    /// A mesh that is gone is not taken for a new one at its address, though no step has forgotten it yet.
+    #[test]
+    fn a_new_mesh_is_no_old_one() {
+        let mut solids = Solids::default();
+        for k in 0..1000 {
+            let height = k as f32;
+            let solid = solids.scaled(1, &triangle(height), Vec3::ONE);
+            let range = solid.and_then(|solid| solid.range()).expect("a surface");
+            assert_eq!(range.0.y, height);
+        }
+        solids.forget(2);
+        assert!(solids.0.is_empty());
     }
 }
