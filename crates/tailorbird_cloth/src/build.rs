@@ -7,9 +7,7 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_solver::{
-    held::HolderKind, particles::Particles, points::Points, topology::Topology,
-};
+use tailorbird_solver::{particles::Particles, points::Points, topology::Topology};
 use tracing::warn;
 
 use crate::{
@@ -105,8 +103,7 @@ impl ClothParticles {
         if count == 0 || count != new.particles() || !ratio.is_finite() {
             return false;
         }
-        let is_none = |kind| self.0.input.held.of(kind).is_empty();
-        let about = if is_none(HolderKind::Pin) && is_none(HolderKind::Limit) {
+        let about = if !self.0.input.held.any_in_frame() {
             let at = |i: u32| self.0.state.position.get(i as usize);
             let held = || attached.particles().filter(|i| (*i as usize) < count);
             if held().next().is_some() {

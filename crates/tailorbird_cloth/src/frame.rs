@@ -13,7 +13,7 @@ use bevy_reflect::prelude::*;
 pub(crate) use split::split;
 pub use split::split_mirrored;
 use split::{check_shear, split_like};
-use tailorbird_solver::{frame::Frame, held::HolderKind, step::ADVANCE};
+use tailorbird_solver::{frame::Frame, step::ADVANCE};
 
 use crate::{
     cloth::Cloth,
@@ -198,9 +198,7 @@ pub fn prepare_frames(
         let Ok(pose) = poses.get(entity) else {
             continue;
         };
-        let holds = [HolderKind::Pin, HolderKind::Limit]
-            .iter()
-            .any(|kind| !particles.input.held.of(*kind).is_empty());
+        let holds = particles.input.held.any_in_frame();
         let how = (pose.teleported, holds);
         let known = (frame.scale, frame.frame.end.rotation);
         let [first, last] = own.scales();

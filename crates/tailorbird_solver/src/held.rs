@@ -84,6 +84,12 @@ impl HeldParticles {
         pins.map(move |held| (held.particle, place(held)))
     }
 
+    /// Whether pins or motion constraints hold any: what keeps its place in the cloth's frame, or near it.
+    pub fn any_in_frame(&self) -> bool {
+        let held = |kind| !self.of(kind).is_empty();
+        held(HolderKind::Pin) || held(HolderKind::Limit)
+    }
+
     /// The one in a hand, and where that moves it to in the cloth's frame \[m\].
     pub fn in_hand(&self) -> Option<(u32, Vec3)> {
         self.0.last().and_then(|held| match held.by {
@@ -159,7 +165,7 @@ mod tests {
             [attached(1), attached(2), attached(7)]
         ));
         assert!(all.particles().eq([3, 5, 1, 2, 7, 9]));
-        assert!(all.anchors().eq([3, 5, 1, 2, 7]));
+        assert!(all.anchors().eq([3, 5, 1, 2, 7]) && all.any_in_frame());
         assert!(!all.replace(
             HolderKind::Attachment,
             [attached(1), attached(2), attached(7)]
@@ -178,6 +184,6 @@ mod tests {
         assert!(all.replace(HolderKind::Pin, []));
         assert_eq!(all.in_hand(), None);
         assert!(all.particles().eq([1, 4]));
-        assert!(all.of(HolderKind::Limit).is_empty());
+        assert!(all.of(HolderKind::Limit).is_empty() && !all.any_in_frame());
     }
 }

@@ -2,7 +2,6 @@
 
 use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
 use tailorbird_solver::{
-    held::HolderKind,
     holds::{Holder, STANDS},
     particles::{Particles, State},
     pose::{Pose, motion},
@@ -40,9 +39,7 @@ impl AttachedParticles {
 
     /// The body that leads a cloth which nothing else holds.
     fn leader(&self, particles: &ClothParticles) -> Option<&Holder> {
-        let held_elsewhere = [HolderKind::Pin, HolderKind::Limit]
-            .iter()
-            .any(|kind| !particles.input.held.of(*kind).is_empty());
+        let held_elsewhere = particles.input.held.any_in_frame();
         self.bodies.first().filter(|_| !held_elsewhere)
     }
 

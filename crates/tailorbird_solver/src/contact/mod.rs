@@ -63,9 +63,6 @@ impl Colliders {
         substep: &Substep,
         cloth: &mut Cloth,
     ) {
-        let is_of = |collider: &MovingCollider, kind: Option<Kind>| {
-            kind.is_none_or(|kind| collider.solid.kind() == kind)
-        };
         let meant = |collider: &MovingCollider| {
             kinds.is_none_or(|kinds| kinds.contains(&collider.solid.kind()))
         };
@@ -92,21 +89,23 @@ impl Colliders {
             ..
         } = &*cloth.particles;
         let points = [position, previous_position];
-        let stage = (substep.index, phase == Phase::Final);
+        let stage = (substep.level, (substep.index, phase == Phase::Final));
         let margin = cloth.coefficients.margin;
-        let stage = (substep.level, stage);
         cache.look(self, cloth.frame, layers, margin, stage, points);
-        let (passes, near) = (kinds.map_or(1, <[Kind]>::len), cache.near.len());
-        for (pass, k) in (0..passes).flat_map(|pass| (0..near).map(move |k| (pass, k))) {
+        for pass in 0..kinds.map_or(1, <[Kind]>::len) {
             let kind = kinds.map(|kinds| kinds[pass]);
-            let near = self.colliders.get(cache.near[k]);
-            let Some(collider) = near.filter(|collider| is_of(collider, kind)) else {
-                continue;
-            };
-            if let Some(body) = collider.body {
-                self.strike((collider, body), phase, substep, cloth, &mut cache);
-            } else {
-                collider.collide(phase, substep, cloth, &mut cache);
+            for k in 0..cache.near.len() {
+                let Some(collider) = self.colliders.get(cache.near[k]) else {
+                    continue;
+                };
+                if kind.is_some_and(|kind| collider.solid.kind() != kind) {
+                    continue;
+                }
+                if let Some(body) = collider.body {
+                    self.strike((collider, body), phase, substep, cloth, &mut cache);
+                } else {
+                    collider.collide(phase, substep, cloth, &mut cache);
+                }
             }
         }
         cloth.particles.state.planes = mem::take(&mut cache.planes);
