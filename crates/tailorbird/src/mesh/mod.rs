@@ -1,5 +1,6 @@
 //! From particles to the picture: builds a mesh for each cloth and writes it once per frame.
 
+mod binding;
 mod build;
 mod changes;
 mod collider;
@@ -23,6 +24,7 @@ mod tangents_wanted;
 mod vertices;
 mod write;
 
+pub use binding::VertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
