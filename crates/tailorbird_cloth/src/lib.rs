@@ -73,6 +73,7 @@ pub mod schedule;
 pub mod settings;
 pub mod sleep;
 pub mod slow_build;
+pub mod snapshot;
 pub mod solver;
 pub mod stages;
 pub mod step;
@@ -118,6 +119,7 @@ pub mod prelude {
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
         sleep::{ClothRest, ClothSeen, ClothSleep},
+        snapshot::ClothSnapshot,
         solver::ClothSolver,
         step::ClothStep,
         substep::{SubstepCloth, SubstepCloths, SubstepContact},

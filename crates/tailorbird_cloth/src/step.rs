@@ -19,17 +19,12 @@ use crate::{
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothStep {
+    /// The last valid settings.
+    pub(crate) settings: ClothSettings,
     pub(crate) seconds: f32,
     pub(crate) world_seconds: f32,
-    pub(crate) time_scale: f32,
     pub(crate) substeps: u32,
-    pub(crate) fixed_substeps: Option<u32>,
     pub(crate) substep: u32,
-    pub(crate) iterations: u32,
-    pub(crate) gravity: Vec3,
-    pub(crate) overlap_speed: f32,
-    pub(crate) most_substeps: u32,
-    pub(crate) substep_budget: u32,
     /// The part that cloths get of the substeps that they want in a storm.
     pub(crate) granted_substeps: f32,
     pub(crate) elapsed: f64,
@@ -100,12 +95,12 @@ impl ClothStep {
 
     /// Passes over the constraints in each substep.
     pub fn iterations(&self) -> u32 {
-        self.iterations
+        self.settings.iterations
     }
 
     /// Acceleration of every particle [m/s²], in world axes.
     pub fn gravity(&self) -> Vec3 {
-        self.gravity
+        self.settings.gravity
     }
 
     /// Simulated time at the start of the step \[s\].
@@ -141,7 +136,8 @@ impl ClothStep {
         particles: &ClothParticles,
     ) -> u32 {
         let automatic = || {
-            let unloaded = solver.substeps(topology) * self.time_scale.ceil().max(1.0) as u32;
+            let unloaded =
+                solver.substeps(topology) * self.settings.time_scale.ceil().max(1.0) as u32;
             let stretched = 1.0 + more_substeps(solver, particles) * self.granted_substeps;
             let times = self.loaded(particles).max(stretched);
             let loaded = (unloaded as f32 * times).ceil() as u32;
@@ -150,9 +146,9 @@ impl ClothStep {
             } else {
                 loaded
             };
-            held.min(self.most_substeps)
+            held.min(self.settings.most_substeps)
         };
-        self.fixed_substeps.unwrap_or_else(automatic).max(1)
+        self.settings.substeps.unwrap_or_else(automatic).max(1)
     }
 
     /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
@@ -163,7 +159,7 @@ impl ClothStep {
             return 1.0;
         }
         let mass: f32 = particles.0.input.mass.iter().sum();
-        let weight = mass * self.gravity.length().max(LEAST_GRAVITY);
+        let weight = mass * self.settings.gravity.length().max(LEAST_GRAVITY);
         (1.0 + 1.5 * load / weight).min(MOST_LOADED)
     }
 
@@ -174,9 +170,9 @@ impl ClothStep {
             seconds: self.seconds / count.max(1) as f32,
             index,
             count: count.max(1),
-            iterations: self.iterations,
-            gravity: self.gravity,
-            overlap_speed: self.overlap_speed,
+            iterations: self.settings.iterations,
+            gravity: self.settings.gravity,
+            overlap_speed: self.settings.overlap_speed,
             workers,
         }
     }
@@ -203,7 +199,6 @@ pub fn step_runs(step: Res<ClothStep>) -> bool {
 pub fn begin_step(
     mut step: ResMut<ClothStep>,
     mut settings: ResMut<ClothSettings>,
-    mut valid: Local<ClothSettings>,
     time: Res<Time>,
     (schedules, own): (Res<Schedules>, Res<OwnStages>),
     cloths: Query<(&ClothRest, &ClothParticles), With<Cloth>>,
@@ -214,9 +209,9 @@ pub fn begin_step(
             error!("{kind}; the last valid settings stay in force");
         }
         if errors.is_empty() {
-            valid.clone_from(&settings);
+            step.settings.clone_from(&settings);
         } else {
-            valid.paused = settings.paused;
+            step.settings.paused = settings.paused;
         }
     }
 
@@ -229,16 +224,9 @@ pub fn begin_step(
         step.elapsed += f64::from(step.seconds);
     }
     step.world_seconds = time.delta_secs();
-    step.time_scale = valid.time_scale;
-    step.seconds = valid.time_scale * step.world_seconds;
+    step.seconds = step.settings.time_scale * step.world_seconds;
     step.substep = 0;
-    step.fixed_substeps = valid.substeps;
-    step.level = SimdLevel(valid.instruction_set.level());
-    step.iterations = valid.iterations;
-    step.gravity = valid.gravity;
-    step.overlap_speed = valid.overlap_speed;
-    step.most_substeps = valid.most_substeps;
-    step.substep_budget = valid.substep_budget;
+    step.level = SimdLevel(step.settings.instruction_set.level());
     step.running = step.seconds > 0.0 && (!settings.paused || single_step);
     step.steps += u64::from(step.running);
     step.whole = step.running && own.are_all(&schedules);
@@ -279,13 +267,17 @@ pub fn plan_substeps(
 ) {
     let awake = cloths.iter().filter(|(.., rest)| !rest.is_asleep());
     let wanted = awake.map(|(solver, topology, particles, _)| {
-        let weight = if topology.fabric.is_some() { MESH } else { 1.0 };
+        let weight = if topology.fabric().is_some() {
+            MESH
+        } else {
+            1.0
+        };
         let unstretched = solver.substeps(topology) as f32;
         weight * particles.len() as f32 * unstretched * more_substeps(*solver, particles)
     });
     let wanted: f32 = wanted.sum();
-    step.granted_substeps = (step.substep_budget as f32 / wanted.max(1.0)).min(1.0);
-    step.substeps = step.fixed_substeps.unwrap_or_else(|| {
+    step.granted_substeps = (step.settings.substep_budget as f32 / wanted.max(1.0)).min(1.0);
+    step.substeps = step.settings.substeps.unwrap_or_else(|| {
         let needed = cloths
             .iter()
             .map(|(solver, topology, particles, _)| step.substeps_of(*solver, topology, particles));

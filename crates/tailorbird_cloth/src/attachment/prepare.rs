@@ -112,7 +112,10 @@ pub fn prepare_attachments(
                 continue;
             };
             let mut errors = data.errors();
-            if (data.is_changed() || state.valid.is_none()) && errors.is_empty() {
+            if (data.is_changed() || state.valid.is_none())
+                && errors.is_empty()
+                && state.valid.as_ref() != Some(&*data)
+            {
                 state.valid = Some(ClothAttachment::clone(&data));
                 state.stale = true;
             }

@@ -111,13 +111,13 @@ pub fn prepare_motion(
         if rebuilt || constraints.is_changed() {
             let errors = constraints.errors(topology.particles());
             if errors.is_empty() {
-                motion.read(&constraints, topology);
+                motion.disturbed |= motion.read(&constraints, topology);
             } else if rebuilt {
                 // Those of another shape mean nothing to this one.
                 motion.limits.max_distance.clear();
                 motion.held.clear();
             }
-            motion.disturbed = true;
+            motion.disturbed |= rebuilt;
             let source = ErrorSource::Motion;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
@@ -211,8 +211,14 @@ impl MotionState {
         self.limits.targets[1].get(i)
     }
 
-    /// Reads valid constraints.
-    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) {
+    /// Reads valid constraints. Returns whether they are others than before.
+    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
+        let before = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ]
+        .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
         let stored = |values: &super::PerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
@@ -234,6 +240,15 @@ impl MotionState {
             .filter(|(_, most)| **most == 0.0)
             .map(|(i, _)| i as u32)
             .collect();
+        let now = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ];
+        before
+            .iter()
+            .zip(now)
+            .any(|(before, now)| **before != **now)
     }
 
     /// Puts the targets to where the particles are at rest.
@@ -246,12 +261,12 @@ impl MotionState {
 
     fn compute_normals(&mut self, topology: &Topology, level: Level) {
         let (targets, normals) = (&self.limits.targets[1], &mut self.limits.normals[1]);
-        match (&topology.lattice, topology.grid) {
-            (Some(lattice), Some(_)) => {
+        match topology.grid_lattice() {
+            Some(lattice) => {
                 let rows = 0..lattice.rows as usize;
                 normals::smooth_lattice(level, lattice, targets, SharedPoints::new(normals), rows);
             }
-            _ => normals::smooth(&topology.triangles, targets, normals),
+            None => normals::smooth(&topology.triangles, targets, normals),
         }
     }
 

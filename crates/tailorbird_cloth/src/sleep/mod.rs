@@ -4,7 +4,10 @@
 
 mod unseen;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::{
+    fmt::{self, Write},
+    hash::{DefaultHasher, Hash, Hasher},
+};
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
@@ -119,6 +122,8 @@ pub struct ClothRest {
     /// What it settles or sleeps in.
     #[reflect(ignore)]
     around: Option<Surroundings>,
+    /// The fingerprint of its settings.
+    settings: u64,
 }
 
 /// What acts on a cloth from outside.
@@ -161,6 +166,7 @@ impl ClothRest {
     pub fn wake(&mut self) {
         *self = Self {
             unseen: self.unseen.touched(),
+            settings: self.settings,
             ..Self::default()
         };
     }
@@ -168,6 +174,7 @@ impl ClothRest {
     fn awake(&self) -> Self {
         Self {
             unseen: self.unseen,
+            settings: self.settings,
             ..Self::default()
         }
     }
@@ -208,10 +215,27 @@ fn around(
     }
     Surroundings {
         gravity: step.gravity(),
-        substeps: step.fixed_substeps,
+        substeps: step.settings.substeps,
         iterations: step.iterations(),
         air: wind.kind(frame, bounds),
         colliders: hasher.finish(),
+    }
+}
+
+/// The fingerprint of values, by what they print.
+fn fingerprint(values: &dyn fmt::Debug) -> u64 {
+    struct Printed(DefaultHasher);
+    impl Write for Printed {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            self.0.write(text.as_bytes());
+            Ok(())
+        }
+    }
+    let mut printed = Printed(DefaultHasher::new());
+    match write!(printed, "{values:?}") {
+        Ok(()) => printed.0.finish(),
+        // Taken for another one.
+        Err(fmt::Error) => 0,
     }
 }
 
@@ -255,12 +279,21 @@ pub fn wake_cloths(
         if rest.is_unseen() {
             continue;
         }
-        let changed = sleep.is_changed()
+        let written = sleep.is_changed()
             || pins.is_changed()
             || material.is_changed()
             || solver.is_changed()
             || topology.is_changed()
             || shading.is_changed();
+        let mut changed = false;
+        if written {
+            let settings = (*sleep, &*pins, *material, *solver, *shading);
+            let settings = fingerprint(&(settings, topology.revision));
+            changed = settings != rest.settings;
+            if changed {
+                rest.settings = settings;
+            }
+        }
         // What hangs straight does not, turned; what is put elsewhere as it is sleeps on.
         let turned = |turn: Quat| turn.angle_between(Quat::IDENTITY) > TURN;
         let pulled = grab.particle().is_some()

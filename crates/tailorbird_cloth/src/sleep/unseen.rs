@@ -77,6 +77,7 @@ pub fn rest_unseen(
         if unseen != rest.unseen {
             *rest = ClothRest {
                 unseen,
+                settings: rest.settings,
                 ..ClothRest::default()
             };
             frame.bypass_change_detection().carries = rest.is_unseen();
