@@ -145,15 +145,15 @@ impl ClothStagesItem<'_, '_> {
             // A triangle without area keeps the normal it had.
             ClothShading::Flat => previous.copy_from(current),
         }
-        match (shading, &topology.lattice, topology.grid) {
+        match (shading, topology.grid_lattice()) {
             // The cells of a mesh are cut in its own way.
-            (ClothShading::Smooth, Some(lattice), Some(_)) => {
+            (ClothShading::Smooth, Some(lattice)) => {
                 let current = SharedPoints::new(current);
                 workers.share(0..lattice.rows as usize, |rows| {
                     normals::smooth_lattice(level, lattice, position, current, rows);
                 });
             }
-            (ClothShading::Smooth, ..) => {
+            (ClothShading::Smooth, None) => {
                 normals::smooth(&topology.triangles, position, current);
             }
             (ClothShading::Flat, ..) => {

@@ -231,7 +231,7 @@ impl PinSelection {
     ) -> Result<Vec<u32>, ClothErrorKind> {
         let particles = topology.particles();
         let grid = || {
-            topology.grid.ok_or_else(|| ClothErrorKind::NotAGrid {
+            topology.grid().ok_or_else(|| ClothErrorKind::NotAGrid {
                 field: field.into(),
                 value: format!("{self:?}"),
             })

@@ -198,6 +198,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             &mut lost,
             None,
             &inv_mass,
+            0..inv_mass.len(),
         );
     });
     let particles = Touching {

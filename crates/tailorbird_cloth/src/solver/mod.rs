@@ -91,7 +91,7 @@ impl ClothSolver {
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
             Self::Chains => {
-                let needed = if let Some(lattice) = topology.lattice {
+                let needed = if let Some(lattice) = topology.lattice() {
                     let side = lattice.columns.max(lattice.rows);
                     let least = if side <= 36 { 6 } else { 8 };
                     side.div_ceil(24).max(least)
@@ -117,7 +117,7 @@ impl ClothSolver {
     /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
     /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
-        let side = match (self, topology.lattice) {
+        let side = match (self, topology.lattice()) {
             (Self::GaussSeidel, _) => 0,
             (Self::Chains, Some(lattice)) => lattice.columns.max(lattice.rows),
             (Self::Chains, None) => (topology.particles() as f32).sqrt().ceil() as u32,

@@ -326,7 +326,7 @@ impl BlowingWind {
             seconds: step.seconds(),
         };
         // The cells of a mesh are cut in its own way.
-        if let (Some(lattice), Some(_)) = (&topology.lattice, topology.grid) {
+        if let Some(lattice) = topology.grid_lattice() {
             let sheet = AirSheet {
                 lattice,
                 position,

@@ -11,6 +11,7 @@ use super::{
     fabric::Fabric,
     hinges::HingeConstraints,
     lattice::Lattice,
+    layout::{Layout, SheetLayout},
     mesh_edges::MeshEdges,
     neighbors::NeighborLists,
     order::ParticleOrder,
@@ -79,11 +80,11 @@ fn arrange(topology: &mut Topology, edges: &MeshEdges) {
     topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
     let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
     if let Some(grid) = Recognized::detect(rest, triangles, edges, None) {
-        topology.lattice = Some(Lattice {
+        topology.layout = Layout::Sheet(SheetLayout::from(Lattice {
             columns: grid.columns as u32,
             rows: grid.rows as u32,
             spacing: grid.spacing,
-        });
+        }));
         reorder(topology, grid.order);
     } else {
         let mut weave = Weave::new(rest, triangles, edges, None);
@@ -91,9 +92,9 @@ fn arrange(topology: &mut Topology, edges: &MeshEdges) {
         weave.renumber(&inverse(&order));
         reorder(topology, order);
         let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-        topology.fabric = Some(Fabric::new(rest, triangles, chains, &weave));
+        topology.layout = Layout::Mesh(Fabric::new(rest, triangles, chains, &weave));
     }
-    if !(topology.flat && topology.lattice.is_some()) {
+    if !(topology.flat && topology.lattice().is_some()) {
         topology.hinges = HingeConstraints::new(&topology.triangles, &topology.rest_positions);
     }
 }
