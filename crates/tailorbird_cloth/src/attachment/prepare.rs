@@ -2,13 +2,13 @@
 
 use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
 
 use super::{
     AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
-    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, pose::pose_of,
+    AttachmentOffset, AttachmentState, BreakReason, ClothAttachment, ClothAttachments,
+    pose::pose_of,
 };
 use crate::{
     cloth::Cloth,
@@ -21,39 +21,6 @@ use crate::{
     step::ClothStep,
     topology::ClothTopology,
 };
-
-/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct AttachmentState {
-    /// The last values that were valid.
-    valid: Option<ClothAttachment>,
-    /// Particles in storage order, and their points in the target's own space \[m\].
-    #[reflect(ignore)]
-    points: Vec<(u32, Vec3)>,
-    /// Of each particle [m/N]; none for a rigid attachment.
-    compliances: Option<Vec<f32>>,
-    target: Option<Entity>,
-    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
-    #[reflect(ignore)]
-    pose: Option<Pose>,
-    /// Where the target was seen last.
-    #[reflect(ignore)]
-    seen: Option<Pose>,
-    /// Of the target in the last step, as far as it was felt [m/s].
-    velocity: Vec3,
-    /// The scale of the cloth that the points were found for.
-    scale: Vec3,
-    /// How many particles that had.
-    particles: usize,
-    /// Of the topology.
-    revision: u64,
-    /// Whether the particles are still to be found.
-    stale: bool,
-    /// What is wrong with the selections and points.
-    #[reflect(ignore)]
-    wrong: Vec<ClothErrorKind>,
-}
 
 /// Reads what holds the attachments, and where it is at the end of this step.
 ///

@@ -2,12 +2,10 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
-    limits::MotionLimits,
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -15,43 +13,20 @@ use tailorbird_solver::{
 };
 
 use super::{
-    ClothMotionConstraints, ClothMotionTargets, TargetSamples, TargetSpace, samples::TargetsAt,
+    ClothMotionConstraints, ClothMotionTargets, MotionState, PerParticle, TargetSamples,
+    TargetSpace, samples::TargetsAt,
 };
 use crate::{
     cloth::Cloth,
     error::{ClothStatus, ErrorSource},
     frame::ClothFrame,
     particles::ClothParticles,
-    sampling::{FrameClock, HopDetector},
+    sampling::FrameClock,
     settings::ClothSettings,
     sleep::ClothRest,
     step::ClothStep,
     topology::ClothTopology,
 };
-
-/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct MotionState {
-    /// How far particles may get from their targets.
-    #[reflect(ignore)]
-    pub(crate) limits: MotionLimits,
-    /// Particles whose largest distance is 0.
-    #[reflect(ignore)]
-    held: Vec<u32>,
-    /// Whether the targets move in this step.
-    moving: bool,
-    disturbed: bool,
-    /// How far the target goes in this step that goes furthest \[m\].
-    furthest: f32,
-    /// Which targets they were aimed at.
-    aimed: [u64; 3],
-    hops: HopDetector,
-    /// Whether a step was left out.
-    idle: bool,
-    /// Of the topology.
-    revision: u64,
-}
 
 /// A cloth that sleeps wakes where a target is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
@@ -220,7 +195,7 @@ impl MotionState {
         ]
         .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
-        let stored = |values: &super::PerParticle, none: f32| -> Numbers {
+        let stored = |values: &PerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };

@@ -52,20 +52,13 @@
 //! them. The method and its limits are explained
 //! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_solver/src/kernels/README.md).
 
+mod stages;
+
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{
-    coefficients::Method,
-    step::{CALM, INTEGRATE, SOLVE},
-    topology::Topology,
-};
+use tailorbird_solver::{coefficients::Method, topology::Topology};
 
-use crate::{
-    cloth::Cloth,
-    collider::ClothColliders,
-    stages::{ClothStages, run_stage},
-    step::ClothStep,
-};
+pub use stages::{calm_knots, solve_constraints, verlet_step};
 
 /// How the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
@@ -124,31 +117,4 @@ impl ClothSolver {
         };
         side.div_ceil(5).next_multiple_of(2).min(32)
     }
-}
-
-/// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
-pub fn verlet_step(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(INTEGRATE, &step, &colliders, &mut cloths);
-}
-
-/// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
-///
-/// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
-/// relaxation, the others as XPBD.
-pub fn solve_constraints(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(SOLVE, &step, &colliders, &mut cloths);
-}
-
-/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
-pub fn calm_knots(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(CALM, &step, &colliders, &mut cloths);
 }
