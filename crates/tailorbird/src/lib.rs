@@ -104,7 +104,7 @@ pub mod prelude {
         fabric::{ClothFabricPlugin, ClothLook, Fabric},
         mesh::{
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
-            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins,
+            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins, MeshThreads,
         },
     };
     pub use tailorbird_cloth::prelude::*;

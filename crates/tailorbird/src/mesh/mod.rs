@@ -29,7 +29,7 @@ pub use binding::VertexBinding;
 pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
 pub use collider::ColliderFromMesh;
-pub use from_mesh::ClothFromMesh;
+pub use from_mesh::{ClothFromMesh, MeshThreads};
 pub use parts::MeshParts;
 pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
 pub use previous::ATTRIBUTE_PREVIOUS_POSITION;

@@ -14,6 +14,7 @@ fn shapes_come_back() {
         shape: ClothShape::Mesh {
             positions: corners.to_vec(),
             indices: vec![0, 1, 2],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::new(0.25, 1.0)],
             weld_distance: 0.002,
         },
     });

@@ -52,6 +52,7 @@ impl Owned {
         let shape = ClothShape::Mesh {
             positions,
             indices: triangles.into_flattened(),
+            uvs: Vec::new(),
             weld_distance: 0.0,
         };
         Self::of(&shape, &[0, 1])

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 
 use super::{
     Topology,
@@ -32,6 +32,7 @@ const DIAGONAL: f32 = 0.9;
 pub(super) fn build(
     positions: &[Vec3],
     indices: &[u32],
+    uvs: &[Vec2],
     weld_distance: f32,
     scale: Vec3,
 ) -> Result<Topology, ShapeError> {
@@ -42,6 +43,7 @@ pub(super) fn build(
             triangles: 0,
         });
     }
+    let uvs = (!uvs.is_empty()).then(|| repaired.corner_uvs(indices, uvs));
     let mut topology = Topology {
         dropped: repaired.dropped(),
         rest_positions: repaired.positions.iter().map(|p| *p * scale).collect(),
@@ -55,7 +57,7 @@ pub(super) fn build(
     if topology.triangles.len() * 3 < indices.len() {
         topology.source_triangles = repaired.source_triangles;
     }
-    arrange(&mut topology, &repaired.edges);
+    arrange(&mut topology, &repaired.edges, uvs.as_deref());
     Ok(topology)
 }
 
@@ -76,10 +78,10 @@ pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Neig
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
-fn arrange(topology: &mut Topology, edges: &MeshEdges) {
+fn arrange(topology: &mut Topology, edges: &MeshEdges, uvs: Option<&[[Vec2; 3]]>) {
     topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
     let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-    if let Some(grid) = Recognized::detect(rest, triangles, edges, None) {
+    if let Some(grid) = Recognized::detect(rest, triangles, edges, uvs) {
         topology.layout = Layout::Sheet(SheetLayout::from(Lattice {
             columns: grid.columns as u32,
             rows: grid.rows as u32,
@@ -87,7 +89,7 @@ fn arrange(topology: &mut Topology, edges: &MeshEdges) {
         }));
         reorder(topology, grid.order);
     } else {
-        let mut weave = Weave::new(rest, triangles, edges, None);
+        let mut weave = Weave::new(rest, triangles, edges, uvs);
         let (chains, order) = Chains::build(rest, &weave);
         weave.renumber(&inverse(&order));
         reorder(topology, order);

@@ -112,10 +112,11 @@ impl Topology {
             ClothShape::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
                 check_positions(positions.iter().map(|p| *p * scale))?;
-                edges::build(positions, indices, *weld_distance, scale)?
+                edges::build(positions, indices, uvs, *weld_distance, scale)?
             }
         };
         topology.revision = revision(shape, scale);

@@ -144,6 +144,7 @@ fn what_is_too_far_or_too_small_to_count_is_refused() {
         ClothShape::Mesh {
             positions,
             indices,
+            uvs: Vec::new(),
             weld_distance: 0.0,
         }
     };
