@@ -55,7 +55,7 @@ fn setup(
                 scale: 0.4,
                 ..default()
             },
-            ..WindZone::cuboid(Vec3::new(0.4, 0.4, 1.2), 5.0 * Vec3::NEG_Z)
+            ..WindZone::cuboid(Vec3::new(0.8, 0.8, 2.4), 5.0 * Vec3::NEG_Z)
         },
         Transform::from_xyz(0.0, 0.0, -1.2),
         ChildOf(fan),

@@ -120,7 +120,7 @@ pub mod prelude {
         settings::{ClothSettings, InstructionSet},
         sleep::{ClothRest, ClothSeen, ClothSleep},
         snapshot::ClothSnapshot,
-        solver::ClothSolver,
+        solver::{ClothSolver, ClothSubsteps},
         step::ClothStep,
         substep::{SubstepCloth, SubstepCloths, SubstepContact},
         topology::{ClothTopology, report::MeshReport},

@@ -11,7 +11,11 @@ use tailorbird_solver::{substep::Substep, topology::Topology, workers::Workers};
 pub(crate) use begin::begin_cloths;
 pub use begin::{begin_step, plan_substeps};
 
-use crate::{particles::ClothParticles, settings::ClothSettings, solver::ClothSolver};
+use crate::{
+    particles::ClothParticles,
+    settings::ClothSettings,
+    solver::{ClothSolver, ClothSubsteps},
+};
 
 /// The step in progress, for systems in [`ClothSubstep`](crate::schedule::ClothSubstep).
 ///
@@ -120,10 +124,15 @@ impl ClothStep {
         self.parallel
     }
 
+    /// The number of substeps that is set for a cloth.
+    pub(crate) fn fixed_substeps(&self, own: Option<&ClothSubsteps>) -> Option<u32> {
+        own.map(|own| own.0).or(self.settings.substeps)
+    }
+
     /// How many substeps this cloth takes where it need not keep step with others.
     pub(crate) fn substeps_of(
         &self,
-        solver: ClothSolver,
+        (solver, own): (ClothSolver, Option<&ClothSubsteps>),
         topology: &Topology,
         particles: &ClothParticles,
     ) -> u32 {
@@ -140,7 +149,7 @@ impl ClothStep {
             };
             held.min(self.settings.most_substeps)
         };
-        self.settings.substeps.unwrap_or_else(automatic).max(1)
+        self.fixed_substeps(own).unwrap_or_else(automatic).max(1)
     }
 
     /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs

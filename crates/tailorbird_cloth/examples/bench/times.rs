@@ -27,7 +27,7 @@ use tailorbird_solver::{
     shape::ClothShape,
     topology::{Topology, lattice::Lattice},
     wall_clock::WallClock,
-    wind::{Turbulence, WindShape},
+    wind::{Turbulence, WindRegion},
 };
 
 /// The time of one kernel.
@@ -271,7 +271,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
     let breeze = Breeze {
         velocity: Vec3::X,
         waves: Some(turbulence.waves(0.0, DVec3::ZERO)),
-        shape: WindShape::Everywhere,
+        shape: WindRegion::Everywhere,
         falloff: 0.0,
         to_own: Isometry3d::IDENTITY,
     };

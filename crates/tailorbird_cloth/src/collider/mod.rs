@@ -151,8 +151,8 @@ impl ClothCollider {
 
     /// A box with these sides \[m\].
     pub fn cuboid(x: f32, y: f32, z: f32) -> Self {
-        let half_size = 0.5 * Vec3::new(x, y, z);
-        ColliderShape::Cuboid { half_size }.into()
+        let size = Vec3::new(x, y, z);
+        ColliderShape::Cuboid { size }.into()
     }
 
     /// A cylinder of this radius and height \[m\] along y.

@@ -51,8 +51,8 @@ impl Solids {
                 radii: [bottom_radius * most, top_radius * most],
                 half_length: half_length * most,
             },
-            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
-                half_size: half_size * scale.abs(),
+            ColliderShape::Cuboid { size } => Solid::Cuboid {
+                half_size: 0.5 * size * scale.abs(),
             },
             ColliderShape::Cylinder {
                 radius,

@@ -163,7 +163,7 @@ impl Default for ClothMotionConstraints {
 
 impl ClothMotionConstraints {
     /// No particle gets further from its target than this \[m\].
-    pub fn within(max_distance: impl Into<PerParticle>) -> Self {
+    pub fn at_most(max_distance: impl Into<PerParticle>) -> Self {
         Self {
             max_distance: max_distance.into(),
             ..Self::default()

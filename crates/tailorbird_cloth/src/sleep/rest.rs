@@ -22,7 +22,7 @@ use crate::{
     motion::MotionState,
     normals::ClothShading,
     pins::ClothPins,
-    solver::ClothSolver,
+    solver::{ClothSolver, ClothSubsteps},
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
     topology::ClothTopology,
@@ -49,7 +49,7 @@ fn around(
     wind: &BlowingWind,
     colliders: &ClothColliders,
     (frame, bounds): (&ClothFrame, &ClothBounds),
-    layers: Option<&ClothLayers>,
+    (layers, substeps): (Option<&ClothLayers>, Option<&ClothSubsteps>),
     material: &ClothMaterial,
 ) -> Surroundings {
     let mut hasher = DefaultHasher::new();
@@ -64,7 +64,7 @@ fn around(
     }
     Surroundings {
         gravity: step.gravity(),
-        substeps: step.settings.substeps,
+        substeps: step.fixed_substeps(substeps),
         iterations: step.iterations(),
         air: wind.kind(frame, bounds),
         colliders: hasher.finish(),
@@ -111,14 +111,15 @@ pub fn wake_cloths(
                 &AttachedParticles,
                 Option<&MotionState>,
             ),
-            (&ClothFrame, &ClothBounds, Option<&ClothLayers>),
+            (&ClothFrame, &ClothBounds),
+            (Option<&ClothLayers>, Option<&ClothSubsteps>),
             &mut ClothStatus,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut rest, settings, acting, (frame, bounds, layers), mut status) in &mut cloths {
+    for (entity, mut rest, settings, acting, place, optional, mut status) in &mut cloths {
         let (grab, forces, attached, motion) = acting;
         let (sleep, pins, material, solver, topology, shading) = settings;
         if sleep.is_changed() {
@@ -147,12 +148,12 @@ pub fn wake_cloths(
         let turned = |turn: Quat| turn.angle_between(Quat::IDENTITY) > TURN;
         let pulled = grab.particle().is_some()
             || !forces.is_empty()
-            || frame.is_moving()
-            || frame.jump_turn().is_some_and(turned)
+            || place.0.is_moving()
+            || place.0.jump_turn().is_some_and(turned)
             || attached.is_disturbed()
             || motion.is_some_and(MotionState::is_disturbed);
         let other = |known: Surroundings| {
-            known != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
+            known != around(&step, &wind, &colliders, place, optional, &material)
         };
         let disturbed = changed || pulled || rest.around.is_some_and(other);
         if disturbed {
@@ -227,7 +228,7 @@ impl ClothStagesItem<'_, '_> {
             wind,
             colliders,
             place,
-            self.layers,
+            (self.layers, self.substeps),
             self.material,
         ));
         if self.sleep.enabled && self.rest.seconds >= self.sleep.seconds {

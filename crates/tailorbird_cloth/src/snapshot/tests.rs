@@ -264,7 +264,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
             world.insert_resource(Sinks(1.35, body));
         }),
         ("limits", |world| {
-            world.spawn((square(), lying(), ClothMotionConstraints::within(0.2)));
+            world.spawn((square(), lying(), ClothMotionConstraints::at_most(0.2)));
         }),
         ("held by what turns, and by springs", |world| {
             let pole = world
@@ -312,7 +312,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                 ..ClothAttachment::default()
             };
             world.spawn((attachment, AttachmentOf(cloth), AttachedTo(pole)));
-            let limited = (square(), still, ClothMotionConstraints::within(0.0));
+            let limited = (square(), still, ClothMotionConstraints::at_most(0.0));
             world.spawn((limited, Transform::from_xyz(5.0, 0.0, 0.0)));
         }),
         ("in a hand", |world| {
@@ -389,7 +389,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                     cloth.insert(ClothSeen(!(80..130).contains(&step)));
                 }),
             ));
-            let zone = WindZone::cuboid(Vec3::splat(3.0), Vec3::new(1.0, 0.0, 4.0));
+            let zone = WindZone::cuboid(Vec3::splat(6.0), Vec3::new(1.0, 0.0, 4.0));
             world.spawn((zone, Transform::from_xyz(1.0, 0.0, 0.0)));
         }),
     ]

@@ -74,6 +74,17 @@ pub enum ClothSolver {
     GaussSeidel,
 }
 
+/// The number of substeps of a cloth, in place of [`ClothSettings::substeps`](crate::settings::ClothSettings::substeps) and of as many as it
+/// needs: fewer for one far away, more for one that must not stretch. Optional; 0 counts as 1.
+///
+/// Where a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep), all cloths take as many as the one that takes
+/// most.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+pub struct ClothSubsteps(pub u32);
+
 impl ClothSolver {
     /// How many substeps a cloth needs in a step of 1/60 s.
     ///

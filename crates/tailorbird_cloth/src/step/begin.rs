@@ -6,8 +6,13 @@ use tracing::error;
 
 use super::{ClothStep, SimdLevel, more_substeps};
 use crate::{
-    cloth::Cloth, particles::ClothParticles, runner::OwnStages, settings::ClothSettings,
-    sleep::ClothRest, solver::ClothSolver, topology::ClothTopology,
+    cloth::Cloth,
+    particles::ClothParticles,
+    runner::OwnStages,
+    settings::ClothSettings,
+    sleep::ClothRest,
+    solver::{ClothSolver, ClothSubsteps},
+    topology::ClothTopology,
 };
 
 /// As how many of a sheet a particle of a mesh counts, by the time it takes.
@@ -80,10 +85,19 @@ pub(crate) fn begin_cloths(mut cloths: Query<(&ClothRest, &mut ClothParticles), 
 /// storms.
 pub fn plan_substeps(
     mut step: ResMut<ClothStep>,
-    cloths: Query<(&ClothSolver, &ClothTopology, &ClothParticles, &ClothRest), With<Cloth>>,
+    cloths: Query<
+        (
+            &ClothSolver,
+            Option<&ClothSubsteps>,
+            &ClothTopology,
+            &ClothParticles,
+            &ClothRest,
+        ),
+        With<Cloth>,
+    >,
 ) {
     let awake = cloths.iter().filter(|(.., rest)| !rest.is_asleep());
-    let wanted = awake.map(|(solver, topology, particles, _)| {
+    let wanted = awake.map(|(solver, _, topology, particles, _)| {
         let weight = if topology.fabric().is_some() {
             MESH
         } else {
@@ -94,10 +108,8 @@ pub fn plan_substeps(
     });
     let wanted: f32 = wanted.sum();
     step.granted_substeps = (step.settings.substep_budget as f32 / wanted.max(1.0)).min(1.0);
-    step.substeps = step.settings.substeps.unwrap_or_else(|| {
-        let needed = cloths
-            .iter()
-            .map(|(solver, topology, particles, _)| step.substeps_of(*solver, topology, particles));
-        needed.max().unwrap_or(1)
+    let needed = cloths.iter().map(|(solver, own, topology, particles, _)| {
+        step.substeps_of((*solver, own), topology, particles)
     });
+    step.substeps = needed.max().or(step.settings.substeps).unwrap_or(1);
 }
