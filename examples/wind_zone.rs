@@ -35,7 +35,7 @@ fn setup(
             Cloth::grid(Vec2::new(0.16, 1.5), UVec2::new(7, 57)).with_origin(Vec2::new(0.5, 0.0)),
             ClothPins::edges([GridEdge::Top]),
             ClothMaterial::silk(),
-            ClothLook::new(Fabric::Silk).with_dye(Color::hsl(hue, 0.6, 0.5)),
+            ClothLook::new(ClothFabric::SILK).with_dye(Color::hsl(hue, 0.6, 0.5)),
             Transform::from_xyz(apart * (k as f32 - 0.5 * (strips - 1) as f32), height, 0.0),
         ));
     }

@@ -101,7 +101,7 @@ pub mod prelude {
     };
     #[cfg(feature = "render")]
     pub use crate::{
-        fabric::{ClothFabricPlugin, ClothLook, Fabric},
+        fabric::{ClothFabric, ClothFabricPlugin, ClothLook},
         mesh::{
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
             ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins, MeshThreads,
