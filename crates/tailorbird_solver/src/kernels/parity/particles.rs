@@ -1,4 +1,4 @@
-//! What moves particles, keeps them out of colliders or looks at them.
+//! Parity of the kernels that move particles, keep them out of colliders or survey them.
 
 use bevy_math::Vec3;
 use fearless_simd::Level;
