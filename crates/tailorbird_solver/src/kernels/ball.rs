@@ -1,5 +1,5 @@
-//! Balls and half-spaces as solids: for bodies that cloth pushes. What stays or moves by itself has faster kernels
-//! (`sphere.rs`, `half_space.rs`).
+//! Balls and half-spaces as solids, for bodies that cloth pushes. For colliders that stay, or move by themselves, `sphere.rs` and
+//! `half_space.rs` are faster.
 
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
@@ -12,7 +12,7 @@ use super::{
 /// A ball around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// \[m\].
+    /// Radius \[m\].
     pub radius: f32,
 }
 
@@ -33,7 +33,7 @@ impl Solid for Ball {
     }
 }
 
-/// All below the height `margin` \[m\].
+/// Half-space of all points below the height `margin` \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     pub margin: f32,

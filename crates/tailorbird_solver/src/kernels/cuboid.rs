@@ -8,13 +8,13 @@ use super::{
     solid::{Near, Solid},
 };
 
-/// A box around the origin: all within `half_size` of it along each axis \[m\].
+/// Box around the origin: all points within `half_size` of it along each axis \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     pub half_size: Vec3,
 }
 
-/// The distance from 0, and the direction away from it.
+/// Distance from 0, and the direction away from it.
 #[inline(always)]
 pub(super) fn away<S: Simd>(simd: S, x: S::f32s) -> (S::f32s, S::f32s) {
     let zero = S::f32s::splat(simd, 0.0);
@@ -30,7 +30,7 @@ impl Solid for Cuboid {
         self.half_size.min_element()
     }
 
-    /// The distance from the plane of the nearest face, which is less than that from an edge.
+    /// Distance from the plane of the nearest face, which is less than that from an edge.
     #[inline(always)]
     fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
         let zero = S::f32s::splat(simd, 0.0);

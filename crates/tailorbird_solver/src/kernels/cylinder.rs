@@ -8,12 +8,12 @@ use super::{
     solid::{Near, Solid},
 };
 
-/// A cylinder along y around the origin.
+/// Cylinder along y around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// \[m\].
+    /// Radius \[m\].
     pub radius: f32,
-    /// \[m\].
+    /// Half its height \[m\].
     pub half_height: f32,
 }
 
@@ -23,7 +23,7 @@ impl Solid for Cylinder {
         self.radius.min(self.half_height)
     }
 
-    /// The distance from its side, or from the plane of its nearest end.
+    /// Distance from its side, or from the plane of its nearest end.
     #[inline(always)]
     fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
         let zero = S::f32s::splat(simd, 0.0);
