@@ -1,21 +1,21 @@
-//! Which chains are solved side by side, and how particles are numbered.
+//! Batches of chains that are solved side by side, and the numbering of particles.
 
 use bevy_math::Vec3;
 
 use super::{LANES, NONE, Weave, cover::Cover};
 
-/// Chains of a batch are at least this part of the first one's length, and at most that divided by it.
+/// Least ratio of the lengths of two chains of a batch.
 const SIMILAR: f32 = 0.85;
 
-/// Up to [`LANES`] chains, each with whether it runs from its end to its start.
+/// Up to [`LANES`] chains, each with a flag: it runs from its end to its start.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     pub(super) lanes: Vec<(usize, bool)>,
-    /// Particles along the longest.
+    /// Particles along the longest chain.
     pub(super) length: usize,
 }
 
-/// Batches of chains that lie side by side on the mesh and run the same way.
+/// Batches of chains that lie side by side on the mesh and run in the same direction.
 pub(super) fn side_by_side(cover: &Cover, rest_positions: &[Vec3], weave: &Weave) -> Vec<Batch> {
     let chord = |chain: usize| {
         let particles = cover.particles(chain);
@@ -51,7 +51,7 @@ pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
     )
 }
 
-/// Fills batches with chains of similar length, or rings, in the order given as far as that allows.
+/// Fills batches with chains of similar length, or rings, in the order of the iterator as far as that allows.
 fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch> {
     let mut batches: Vec<Batch> = Vec::new();
     // The batches that still have room, with the length of their first chain, and whether it is a ring.
@@ -94,7 +94,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
     batches
 }
 
-/// For each storage number the given one: first the particles of the batches, then the others, each beside its neighbours.
+/// Original index of each particle in storage order: first the particles of the batches, then the others, each near its neighbours.
 pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &Weave) -> Vec<u32> {
     let mut order = Vec::with_capacity(particles);
     let mut number = vec![NONE; particles];
@@ -104,7 +104,7 @@ pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &
                 let chain = cover.particles(chain);
                 if k < chain.len() {
                     let particle = chain[if reversed { chain.len() - 1 - k } else { k }];
-                    // The last of a ring is its first.
+                    // The last particle of a ring is its first.
                     if number[particle as usize] == NONE {
                         number[particle as usize] = order.len() as u32;
                         order.push(particle);
@@ -128,7 +128,7 @@ pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &
     order
 }
 
-/// All chains, each beside the one before it where there is one, with a chain beside it that came before.
+/// All chains in an order in which neighbours follow each other where possible; with each, a chain beside it that comes earlier.
 fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<usize>)> {
     let beside = Beside::new(cover, particles, weave);
     let mut seen = vec![false; cover.len()];
@@ -158,7 +158,7 @@ fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<us
     walk
 }
 
-/// Which chains lie side by side, with the number of edges between them.
+/// Adjacency of chains, with the number of edges between two.
 struct Beside {
     starts: Vec<usize>,
     chains: Vec<(u32, u32)>,
@@ -199,7 +199,7 @@ impl Beside {
         &self.chains[self.starts[chain]..self.starts[chain + 1]]
     }
 
-    /// The chain beside this one with the most edges between them that is not `seen` yet.
+    /// Chain beside this one with the most edges between them that is not `seen` yet.
     fn best(&self, chain: usize, seen: &[bool]) -> Option<usize> {
         let fresh = self.of(chain).iter().filter(|c| !seen[c.0 as usize]);
         fresh
@@ -207,7 +207,7 @@ impl Beside {
             .map(|(chain, _)| *chain as usize)
     }
 
-    /// The chain most steps away. `mark` is one that no chain has yet.
+    /// Chain most steps away. `mark` is one that no chain has yet.
     fn furthest(&self, chain: usize, marks: &mut [usize], mark: usize) -> usize {
         let mut queue = vec![chain];
         marks[chain] = mark;
