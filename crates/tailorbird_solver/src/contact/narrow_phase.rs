@@ -1,4 +1,4 @@
-//! Contacts of the particles of a cloth with one collider.
+//! Narrow phase: contacts of the particles of a cloth with one collider.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -130,7 +130,7 @@ fn touching<'a>(
     }
 }
 
-/// How something turns on a way: axis times angle \[rad\].
+/// Rotation from one pose to another: axis times angle \[rad\].
 fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     if from.rotation == to.rotation {
         Vec3::ZERO
@@ -139,11 +139,11 @@ fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     }
 }
 
-/// What is faster than this goes through a cloth that it has drawn far out [m/s].
+/// Speed above which a collider goes through a cloth that it has drawn far out [m/s].
 const FAST: f32 = 2.0;
 
 impl MovingCollider {
-    /// Whether it goes through the cloth, at this speed [m/s].
+    /// Returns whether the collider goes through the cloth, at this speed [m/s].
     fn passes(&self, speed: f32, cache: &mut ContactCache) -> bool {
         let at = cache.passing.iter().position(|key| *key == self.id);
         if let Some(at) = at
@@ -155,7 +155,7 @@ impl MovingCollider {
         at.is_some()
     }
 
-    /// Keeps the particles of one cloth out.
+    /// Keeps the particles of one cloth out of the collider.
     pub fn collide(
         &self,
         phase: Phase,
@@ -173,7 +173,7 @@ impl MovingCollider {
         let friction = combined_friction(self.friction, material.friction);
         let motion = Motion::new(way, friction);
         let turn = turn(way);
-        // What motion constraints pull back into a collider did not go there by itself either.
+        // A particle that a motion constraint pulls into a collider did not go there by itself either.
         let overlaps = AtomicBool::new(false);
         let out = Out {
             most: if cloth.limits.is_some() {
@@ -204,7 +204,7 @@ impl MovingCollider {
                 touches = true;
                 if phase == Phase::Approach {
                     particles.scratch.contacts.any = true;
-                    // What turns sweeps along as it does a metre from its axis.
+                    // A rotation sweeps along as it does a metre from its axis.
                     let touch = &mut particles.state.touch;
                     touch.swept = touch.swept.max(far + turn.length());
                 }
@@ -222,7 +222,7 @@ impl MovingCollider {
         }
     }
 
-    /// Keeps the particles of a range out.
+    /// Keeps the particles of a range out of the collider.
     fn collide_range(
         &self,
         phase: Phase,
@@ -269,7 +269,7 @@ impl MovingCollider {
         }
     }
 
-    /// Lists which particles of a range touch it.
+    /// Adds the particles of a range that touch the collider to `found`.
     pub fn find_touching(
         &self,
         motion: &Motion,
@@ -290,7 +290,7 @@ impl MovingCollider {
         });
     }
 
-    /// Where the path of particle `i` ends with respect to the surface.
+    /// Contact at the end of the path of particle `i`.
     pub fn nearest(
         &self,
         motion: &Motion,
@@ -305,7 +305,7 @@ impl MovingCollider {
         })
     }
 
-    /// Keeps the particle out that is held by a hand.
+    /// Keeps the particle in a hand out of the collider.
     fn collide_held(
         &self,
         i: usize,

@@ -1,4 +1,4 @@
-//! What is looked at after the last substep of a step, and calmed.
+//! Checks after the last substep of a step, and damping of tangles.
 
 use fearless_simd::Level;
 
@@ -17,8 +17,8 @@ use crate::{
     topology::{Topology, lattice::Lattice},
 };
 
-/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
-/// its momentum.
+/// Damps tangled particles: an edge compressed below 70 % of its rest length gets the rigid motion of the whole cloth. Conserves momentum
+/// if the cloth is free.
 pub fn calm(
     level: Level,
     topology: &Topology,
@@ -47,7 +47,7 @@ pub fn calm(
     if let Some(lattice) = &topology.lattice {
         let sheet = bare(lattice, position, inv_mass);
         let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
-        // What carries bodies takes more substeps for them already, and would throw them.
+        // A cloth that carries bodies takes more substeps for them already, and would throw them.
         if couplings.is_empty() {
             let side = lattice.columns.max(lattice.rows) as f32;
             let longest = Longest {
@@ -144,7 +144,7 @@ fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]
     }
 }
 
-/// Gives all particles what is missing of the motion of the whole as it was.
+/// Adds to all particles the difference between the earlier rigid motion of the whole and the present one.
 fn give_back(was: RigidMotion, mass: &[f32], position: &Points, previous: &mut Points) {
     let is = RigidMotion::of_all(mass, position, previous);
     for i in 0..mass.len() {

@@ -1,4 +1,4 @@
-//! What a substep does to a cloth: inertia, then constraints, then what is tangled.
+//! Stages of a substep within the cloth: inertia, then constraints, then damping of tangles.
 
 mod calm;
 mod chains;
@@ -70,7 +70,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
     particles.state.substep_seconds = seconds;
 }
 
-/// Holds the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
+/// Solves the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
 pub fn solve(substep: &Substep, cloth: &mut Cloth) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     if let Some(forces) = &mut cloth.forces {
@@ -100,7 +100,7 @@ pub fn solve(substep: &Substep, cloth: &mut Cloth) {
     }
 }
 
-/// Damps what is tangled in itself, after the last substep.
+/// Damps tangles, after the last substep.
 pub fn calm(substep: &Substep, cloth: &mut Cloth) {
     let solves = cloth.method == Method::Lines && substep.iterations > 0;
     if solves && substep.left() == 1 {
