@@ -23,7 +23,7 @@ pub struct Effort {
     /// True while the fabric gives way and moves slowly: it is strained, or has not recovered from that.
     pub recovers: bool,
     /// Number of steps for which it goes on to come to rest after it has recovered.
-    settles: u32,
+    slowed: u32,
     /// True if a collider has drawn an edge far out.
     pub drawn_out: bool,
     /// Speed that other causes may give the cloth in this step: air, forces, its own frame [m/s].
@@ -31,13 +31,13 @@ pub struct Effort {
     /// Largest speed of a collider that touches it in this step [m/s].
     pub struck: f32,
     /// Time for which holders, colliders and other causes of motion have stood still \[s\].
-    still: f32,
+    standstill: f32,
     /// The same time, but counted anew when strain falls \[s\].
     lull: f32,
     /// Additional substeps that it needs, as a multiple of their number [-].
     more: f32,
     /// Number of held particles, and of colliders that touch the cloth.
-    around: [usize; 2],
+    contacts: [usize; 2],
     /// Least values of the strained part and of the longest edge [-], since anything else moved.
     least: [f32; 2],
 }
@@ -101,7 +101,7 @@ const STRUCK_RISE: f32 = 0.5;
 const FALL: f32 = 0.005;
 
 /// Number of steps for which a cloth goes on to come to rest after it has recovered.
-const SETTLES: u32 = 60;
+const SLOWED: u32 = 60;
 
 /// Number of those steps after which it may move twice as fast.
 const LET_GO: f32 = 6.0;
@@ -160,24 +160,24 @@ impl Effort {
     }
 
     /// Returns whether it recovers, or has just done so: a particle that is farther from a pin than its tether allows comes back slowly.
-    pub fn settles(self) -> bool {
-        self.settles > 0
+    pub fn is_slowed(self) -> bool {
+        self.slowed > 0
     }
 
     /// Returns whether its demand stays the same.
     pub fn stands(self) -> bool {
-        self.still > STANDS
+        self.standstill > STANDS
     }
 
     /// Updates the state from the lengths of the edges at the end of a step. A cloth that has been granted something recovers until that is
     /// taken back.
-    pub fn see(&mut self, seen: Seen, touch: Touch) {
-        let Seen {
+    pub fn update(&mut self, survey: EdgeSurvey, touch: Touch) {
+        let EdgeSurvey {
             strained,
             longest,
             granted,
             is_mesh,
-        } = seen;
+        } = survey;
         self.strained = strained;
         // A cloth that a storm stretches is not asked for more than it has.
         let blown = self.driven > STORM;
@@ -185,9 +185,9 @@ impl Effort {
         self.drawn_out = longest.times > DRAWN_OUT.times && longest.part > DRAWN_OUT.part;
         let torn = longest.times > TORN;
         let long = LONG[usize::from(touch.overlaps || is_mesh && touch.any)];
-        let still = STILL_STRAINED[usize::from(touch.overlaps || granted || is_mesh)];
+        let ended = STILL_STRAINED[usize::from(touch.overlaps || granted || is_mesh)];
         let (most, long) = if self.recovers {
-            (still, long[1])
+            (ended, long[1])
         } else if touch.overlaps {
             (STRAINED_INSIDE, long[0])
         } else {
@@ -204,10 +204,10 @@ impl Effort {
             (false, false) => MOMENTS[2],
         };
         self.recovers = self.steps >= moment || granted;
-        self.settles = if self.recovers {
-            SETTLES
+        self.slowed = if self.recovers {
+            SLOWED
         } else {
-            self.settles.saturating_sub(1)
+            self.slowed.saturating_sub(1)
         };
         self.is_asked = self.recovers && !blown;
         self.is_told = self.recovers && (self.is_told || self.steps >= TOLD);
@@ -223,7 +223,7 @@ impl Effort {
         };
         self.more = (self.more + change).clamp(0.0, MOST_MORE);
         if !self.recovers {
-            (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
+            (self.standstill, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
         }
         for (least, now) in self.least.iter_mut().zip([strained, longest.times]) {
             // Strain that falls is not slowed.
@@ -236,19 +236,19 @@ impl Effort {
     /// Adds the motion of the cloth's frame in so many seconds. A rotation counts as the displacement of a point one metre from its axis.
     pub fn carried(&mut self, [start, end]: [Isometry3d; 2], seconds: f32) {
         let turned = start.rotation.angle_between(end.rotation);
-        let way = start.translation.distance(end.translation);
-        self.driven += (way + turned) / seconds;
+        let distance = start.translation.distance(end.translation);
+        self.driven += (distance + turned) / seconds;
     }
 
     /// Counts the time for which holders, colliders and other causes of motion stand still; `speed` is the largest of theirs [m/s].
-    pub fn pass(&mut self, seconds: f32, speed: f32, around: [usize; 2]) {
-        if speed > STILL || around != self.around {
-            (self.still, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
+    pub fn pass(&mut self, seconds: f32, speed: f32, contacts: [usize; 2]) {
+        if speed > STILL || contacts != self.contacts {
+            (self.standstill, self.lull, self.least) = (0.0, 0.0, [f32::INFINITY; 2]);
         } else {
-            self.still += seconds;
+            self.standstill += seconds;
             self.lull += seconds;
         }
-        self.around = around;
+        self.contacts = contacts;
     }
 
     /// Part of its speed that is left to a strained cloth in a lull [-].
@@ -263,7 +263,7 @@ impl Effort {
         let since = if self.recovers {
             0
         } else {
-            SETTLES - self.settles
+            SLOWED - self.slowed
         };
         SPEED * self.lulled() * (since as f32 / LET_GO).exp2()
     }
@@ -271,7 +271,7 @@ impl Effort {
 
 /// Survey of the edges at the end of a step.
 #[derive(Clone, Copy)]
-pub struct Seen {
+pub struct EdgeSurvey {
     /// Part of the edges that is longer than the fabric allows [-].
     pub strained: f32,
     pub longest: Longest,

@@ -74,7 +74,7 @@ pub struct Grant {
     /// Trial that tells a demand from a load.
     trial: Trial,
     /// Normal equations of the strain around each particle; scratch.
-    around: [Vec<Neighborhood>; 2],
+    neighborhoods: [Vec<Neighborhood>; 2],
     /// Strain demanded around each particle, and no more than there is [-]; scratch.
     asked: Vec<[f32; 2]>,
 }
@@ -196,7 +196,7 @@ impl Grant {
             + heap(&self.chains)
             + heap(&self.springs)
             + heap(&self.columns)
-            + self.around.iter().map(heap).sum::<usize>()
+            + self.neighborhoods.iter().map(heap).sum::<usize>()
     }
 
     /// Grants the demand of a cloth that is asked for more than the fabric has, and takes back what was granted, at the end of a step.
@@ -247,33 +247,34 @@ impl Grant {
 
     /// Measures the demand around each particle: the mean strain of its neighbourhood. Where there is less, others have more.
     fn measure(&mut self, threads: Threads, position: &Points) {
-        let [around, next] = &mut self.around;
-        around.clear();
-        around.resize(threads.particles(), Neighborhood::default());
+        let [neighborhoods, next] = &mut self.neighborhoods;
+        neighborhoods.clear();
+        neighborhoods.resize(threads.particles(), Neighborhood::default());
         threads.each_edge(|ends, rest_length, c| {
             let [a, b] = ends.map(|i| position.get(i as usize));
             let strain = (a.distance(b) / rest_length - 1.0).min(2.0 * MOST);
             for i in ends {
-                around[i as usize].add(c, strain);
+                neighborhoods[i as usize].add(c, strain);
             }
         });
         for round in 0..ROUNDS {
-            next.clone_from(around);
+            next.clone_from(neighborhoods);
             threads.each_edge(|ends, _, _| {
                 let [a, b] = ends.map(|i| i as usize);
-                next[a].add_part(&around[b], 1.0);
-                next[b].add_part(&around[a], 1.0);
+                next[a].add_part(&neighborhoods[b], 1.0);
+                next[b].add_part(&neighborhoods[a], 1.0);
             });
-            for (mean, sum) in around.iter_mut().zip(&*next) {
+            for (mean, sum) in neighborhoods.iter_mut().zip(&*next) {
                 *mean = Neighborhood::default();
                 mean.add_part(sum, 1.0 / sum.count.max(1.0));
             }
             if round == 0 {
-                self.asked.extend(around.iter().map(Neighborhood::strain));
+                self.asked
+                    .extend(neighborhoods.iter().map(Neighborhood::strain));
             }
         }
-        for (asked, around) in self.asked.iter_mut().zip(around) {
-            for (asked, mean) in asked.iter_mut().zip(around.strain()) {
+        for (asked, neighborhoods) in self.asked.iter_mut().zip(neighborhoods) {
+            for (asked, mean) in asked.iter_mut().zip(neighborhoods.strain()) {
                 *asked = asked.min(mean);
             }
         }

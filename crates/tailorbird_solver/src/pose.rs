@@ -70,7 +70,7 @@ impl Pose {
     }
 
     /// Displacement to another pose \[m\].
-    pub fn way_to(&self, to: &Self) -> Vec3 {
+    pub fn displacement_to(&self, to: &Self) -> Vec3 {
         Vec3::from(to.place.translation - self.place.translation)
     }
 

@@ -38,8 +38,8 @@ impl Particles {
             sum += away;
             most = most.max(away);
         }
-        let near = (speed * MEAN).powi(2);
-        known && sum <= near * runs as f32 && most <= FASTEST * FASTEST * near
+        let limit = (speed * MEAN).powi(2);
+        known && sum <= limit * runs as f32 && most <= FASTEST * FASTEST * limit
     }
 
     /// Removes all but a part of the displacement in this step, and of the velocity.
@@ -59,9 +59,9 @@ impl Particles {
                 if *w == 0.0 {
                     continue;
                 }
-                let way = *now - *previous;
+                let displacement = *now - *previous;
                 *now = *start + kept * (*now - *start);
-                *previous = *now - kept * way;
+                *previous = *now - kept * displacement;
                 *lost = 0.0;
             }
         };

@@ -22,7 +22,7 @@ use crate::{
     topology::ClothTopology,
 };
 
-/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
+/// Particles and target of an attachment, found when it or the cloth changes. Written by [`prepare_attachments`] alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct AttachmentState {
@@ -31,34 +31,34 @@ pub struct AttachmentState {
     /// Particles in storage order, and their points in the target's own space \[m\].
     #[reflect(ignore)]
     points: Vec<(u32, Vec3)>,
-    /// Of each particle [m/N]; none for a rigid attachment.
+    /// Compliance of each particle [m/N]; `None` for a rigid attachment.
     compliances: Option<Vec<f32>>,
     target: Option<Entity>,
-    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
+    /// Pose of the target at the end of the step before; of a sleeping cloth, when it fell asleep.
     #[reflect(ignore)]
     pose: Option<Pose>,
-    /// Where the target was seen last.
+    /// Pose of the target when it was last seen.
     #[reflect(ignore)]
     seen: Option<Pose>,
-    /// Of the target in the last step, as far as it was felt [m/s].
+    /// Velocity of the target in the last step, as far as it was felt [m/s].
     velocity: Vec3,
     /// The scale of the cloth that the points were found for.
     scale: Vec3,
-    /// How many particles that had.
+    /// Number of particles of that topology.
     particles: usize,
-    /// Of the topology.
+    /// Revision of the topology.
     revision: u64,
-    /// Whether the particles are still to be found.
+    /// True if the particles are still to be found.
     stale: bool,
-    /// What is wrong with the selections and points.
+    /// Errors in the selections and points.
     #[reflect(ignore)]
     wrong: Vec<ClothErrorKind>,
 }
 
-/// Reads what holds the attachments, and where it is at the end of this step.
+/// Reads the targets of attachments, and their poses at the end of this step.
 ///
-/// What is wrong with an attachment is reported for its entity, and what was valid last stays in force: the particles stay
-/// held where the target was.
+/// An error of an attachment is reported for its entity, and its last valid state stays in force: the particles stay held where the target
+/// was.
 pub fn prepare_attachments(
     step: Res<ClothStep>,
     poses: SampledPoses,
@@ -182,9 +182,9 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let way = start.way_to(&end);
+            let way = start.displacement_to(&end);
             if rest.is_unseen() && step.running() {
-                state.velocity = began.way_to(&end) / step.world_seconds();
+                state.velocity = began.displacement_to(&end) / step.world_seconds();
             }
             let excess = if unfelt || way == Vec3::ZERO && teleport {
                 Vec3::ZERO
@@ -216,7 +216,7 @@ pub fn prepare_attachments(
                     && let Ok((.., mut state, _)) =
                         attachments.get_mut(Entity::from_bits(body.attachment))
                 {
-                    let way = body.start.way_to(&body.end);
+                    let way = body.start.displacement_to(&body.end);
                     state.velocity = way / step.world_seconds();
                 }
             }

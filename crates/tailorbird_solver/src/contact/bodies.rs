@@ -223,17 +223,17 @@ impl Pull {
 impl Struck<'_> {
     /// Part of a pull that stops the body in the direction of the pull: more would throw it back.
     pub fn stopped_by(&self, pull: &Pull) -> f32 {
-        let way = pull.impulse.dot(self.body.inv_mass * pull.impulse)
+        let own_work = pull.impulse.dot(self.body.inv_mass * pull.impulse)
             + pull.moment.dot(self.body.inv_inertia * pull.moment);
-        if way > 0.0 {
-            (pull.work / way).clamp(0.0, 1.0)
+        if own_work > 0.0 {
+            (pull.work / own_work).clamp(0.0, 1.0)
         } else {
             1.0
         }
     }
 
     /// Poses of the collider in the cloth's frame at the start and at the end of the substep, as far as they are known.
-    pub fn way(&self, frame: &Frame) -> [Isometry3d; 2] {
+    pub fn poses(&self, frame: &Frame) -> [Isometry3d; 2] {
         let [from, to] = self.given;
         let from = self.proxy.displaced(from, self.center_before, false);
         let to = self.proxy.displaced(to, self.center, true);
@@ -243,7 +243,7 @@ impl Struck<'_> {
 
     /// Motion of the collider in the cloth's frame.
     pub fn motion(&self, frame: &Frame) -> Motion {
-        Motion::new(self.way(frame), self.friction)
+        Motion::new(self.poses(frame), self.friction)
     }
 
     /// Position of a particle relative to the body's centre of mass \[m\], from its position in the world at the start of the substep.

@@ -37,7 +37,7 @@ fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
 impl ContactCache {
     /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides the colliders'
     /// own margins.
-    pub fn look(
+    pub fn find_colliders(
         &mut self,
         colliders: &Colliders,
         frame: &Frame,

@@ -76,7 +76,7 @@ impl MovingCollider {
     }
 
     /// Box around it during the step, margin included, in the world \[m\].
-    pub fn around(&self) -> (Vec3, Vec3) {
+    pub fn swept_box(&self) -> (Vec3, Vec3) {
         const EVERYWHERE: (Vec3, Vec3) = (Vec3::MIN, Vec3::MAX);
         let margin = Vec3::splat(self.margin);
         self.solid.range().map_or(EVERYWHERE, |range| {

@@ -50,10 +50,10 @@ impl Colliders {
         let mut found = mem::take(&mut cache.found);
         found.clear();
         found.extend(couplings[old.clone()].iter().map(|c| c.particle));
-        let (way, len) = (struck.way(frame), particles.len());
+        let (poses, len) = (struck.poses(frame), particles.len());
         let motion = struck.motion(frame);
         let mut start = 0;
-        while let Some(range) = cache.next(&collider.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&collider.solid, poses, margin, start, len) {
             start = range.end;
             collider.prepare(&motion, margin, particles, cache, substep, range.clone());
             collider.find_touching(&motion, margin, particles, cache, range, &mut found);
@@ -184,7 +184,7 @@ impl Colliders {
                 continue;
             };
             let margin = collider.margin + cloth.coefficients.margin;
-            let [from, to] = struck.way(frame);
+            let [from, to] = struck.poses(frame);
             let motion = struck.motion(frame);
             let mut pulled = Pull::default();
             for coupling in &mut *group {
@@ -201,12 +201,12 @@ impl Colliders {
                 coupling.held = held * coupling.mass - pushed;
                 coupling.pressed += coupling.held;
                 let point = from.inverse() * path[0];
-                let way = to * point - path[0] - pins.unwrap_or(Vec3::ZERO);
+                let displacement = to * point - path[0] - pins.unwrap_or(Vec3::ZERO);
                 let along = frame.vector_to_world(coupling.normal);
                 pulled.add(
                     struck.arm(frame.to_world(path[0])),
                     along * -coupling.held,
-                    coupling.held * coupling.normal.dot(way),
+                    coupling.held * coupling.normal.dot(displacement),
                 );
             }
             // The part by which pins pull back an earlier excess gives the body no velocity.

@@ -91,7 +91,7 @@ impl Colliders {
         let points = [position, previous_position];
         let stage = (substep.level, (substep.index, phase == Phase::Final));
         let margin = cloth.coefficients.margin;
-        cache.look(self, cloth.frame, layers, margin, stage, points);
+        cache.find_colliders(self, cloth.frame, layers, margin, stage, points);
         for pass in 0..kinds.map_or(1, <[Kind]>::len) {
             let kind = kinds.map(|kinds| kinds[pass]);
             for k in 0..cache.near.len() {

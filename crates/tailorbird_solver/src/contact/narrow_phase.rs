@@ -22,7 +22,7 @@ use crate::{
         cylinder::Cylinder,
         half_space::{self, MovingHalfSpace},
         lanes::{Shared, SharedPoints},
-        patches::{Patches, Seen},
+        patches::{ContactPlanes, Patches},
         planes::Planes,
         solid::{self, Contact, Motion},
         sphere::{self, MovingSphere},
@@ -34,7 +34,7 @@ use crate::{
 
 /// Calls a body of code with the kernel's form of a solid.
 macro_rules! with_solid {
-    ($solid:expr, $margin:expr, $seen:expr, |$name:ident| $do:expr) => {{
+    ($solid:expr, $margin:expr, $planes:expr, |$name:ident| $do:expr) => {{
         let margin: f32 = $margin;
         match $solid {
             Solid::Sphere { radius } => {
@@ -87,8 +87,8 @@ macro_rules! with_solid {
                 $do
             }
             Solid::Mesh(_) => {
-                let patches: &Patches = $seen;
-                let $name = Seen { patches, margin };
+                let patches: &Patches = $planes;
+                let $name = ContactPlanes { patches, margin };
                 $do
             }
         }
@@ -164,15 +164,15 @@ impl MovingCollider {
         cache: &mut ContactCache,
     ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
-        let way = frame.way_to_frame(self.start, self.end, substep.fractions());
-        let far = way[0].translation.distance(way[1].translation);
+        let poses = frame.way_to_frame(self.start, self.end, substep.fractions());
+        let far = poses[0].translation.distance(poses[1].translation);
         if self.passes(far / substep.seconds, cache) {
             return;
         }
         let margin = self.margin + material.margin;
         let friction = combined_friction(self.friction, material.friction);
-        let motion = Motion::new(way, friction);
-        let turn = turn(way);
+        let motion = Motion::new(poses, friction);
+        let turn = turn(poses);
         // A particle that a motion constraint pulls into a collider did not go there by itself either.
         let overlaps = AtomicBool::new(false);
         let out = Out {
@@ -186,7 +186,7 @@ impl MovingCollider {
         let particles = &mut *cloth.particles;
         let len = particles.len();
         let (mut start, mut touches) = (0, false);
-        while let Some(range) = cache.next(&self.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&self.solid, poses, margin, start, len) {
             start = range.end;
             self.prepare(&motion, margin, particles, cache, substep, range.clone());
             let any = self.collide_range(
@@ -229,7 +229,7 @@ impl MovingCollider {
         substep: &Substep,
         (motion, rotation, margin): (&Motion, Vec3, f32),
         particles: Touching,
-        seen: &Patches,
+        planes: &Patches,
         range: std::ops::Range<usize>,
     ) -> bool {
         let (level, workers) = (substep.level, substep.workers);
@@ -263,7 +263,7 @@ impl MovingCollider {
                     half_space::collide_all(level, &plane, particles, range)
                 })
             }
-            other => with_solid!(other, margin, seen, |solid| workers.any(range, |range| {
+            other => with_solid!(other, margin, planes, |solid| workers.any(range, |range| {
                 solid::collide_all(level, &solid, motion, particles, range)
             })),
         }
@@ -284,8 +284,8 @@ impl MovingCollider {
             overlaps: &AtomicBool::new(false),
         };
         let touching = touching(particles, Phase::Final, false, out);
-        let seen = cache.seen(self);
-        with_solid!(&self.solid, margin, seen, |solid| {
+        let planes = cache.seen(self);
+        with_solid!(&self.solid, margin, planes, |solid| {
             solid::find(&solid, motion, touching, range, |i| found.push(i));
         });
     }
@@ -299,8 +299,8 @@ impl MovingCollider {
         i: usize,
         path: [Vec3; 2],
     ) -> Contact {
-        let seen = cache.seen(self);
-        with_solid!(&self.solid, margin, seen, |solid| {
+        let planes = cache.seen(self);
+        with_solid!(&self.solid, margin, planes, |solid| {
             solid::nearest(&solid, motion, i, path)
         })
     }

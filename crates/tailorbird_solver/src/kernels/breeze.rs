@@ -70,9 +70,9 @@ fn add_to<S: Simd>(
                 let turns = V3::splat(simd, wave.turns).dot(p) + S::f32s::splat(simd, wave.phase);
                 velocity = velocity + Factor(sine(simd, turns)) * V3::splat(simd, wave.amplitude);
             }
-            let way = Factor(seconds * strength(simd, breeze, p)) * velocity;
+            let displacement = Factor(seconds * strength(simd, breeze, p)) * velocity;
             let before = out.load_at(simd, window, 0);
-            out.store_at(simd, window, 0, before + way);
+            out.store_at(simd, window, 0, before + displacement);
         },
     );
 }

@@ -83,7 +83,7 @@ fn hold_with<S: Simd>(
         |window| {
             let target = between(simd, limits.targets, window, to);
             let start: V3<S> = position.load_at(simd, window, 0);
-            let mut path = Path {
+            let mut path = Pushed {
                 place: start,
                 pushed: V3::splat(simd, bevy_math::Vec3::ZERO),
             };
@@ -129,12 +129,12 @@ fn hold_with<S: Simd>(
 
 /// Positions of particles, and the direction of the last push of each.
 #[derive(Clone, Copy)]
-struct Path<S: Simd> {
+struct Pushed<S: Simd> {
     place: V3<S>,
     pushed: V3<S>,
 }
 
-impl<S: Simd> Path<S> {
+impl<S: Simd> Pushed<S> {
     #[inline(always)]
     fn select(self, mask: S::mask32s, place: V3<S>, pushed: V3<S>) -> Self {
         Self {

@@ -36,7 +36,7 @@ use super::{
     lanes::{Factor, Shared, V3},
     lines::{FREE, Lines, NO_MASS, PRESSED, apply},
     row::{beside, own},
-    share::{Bounds, share},
+    share::{TensionBounds, share},
 };
 
 /// State of the sweep forward: the particles a, b, c = e, e+1, e+2 around the edge e, and the last row of the elimination.
@@ -87,7 +87,7 @@ pub fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
         sweep.advance::<BEND, CONTACT, false>(e);
     }
     // Substitution back; `taut` are edges whose tension is shared (README: "Tension along edges as they will lie").
-    let bounds = Bounds::new(bears, lines.give);
+    let bounds = TensionBounds::new(bears, lines.give);
     let taut = if bounds.gives() {
         substitute::<S, E, CONTACT, true>(simd, lines, edges, factors, bounds)
     } else {
@@ -202,7 +202,7 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     lines: Lines,
     edges: E,
     factors: Shared,
-    bounds: Bounds<S>,
+    bounds: TensionBounds<S>,
 ) -> Range<usize> {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));

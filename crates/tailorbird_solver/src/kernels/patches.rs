@@ -55,13 +55,13 @@ impl Patches {
 
 /// Planes of a cloth's particles, as a solid.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct ContactPlanes<'a> {
     pub patches: &'a Patches,
     /// Distance that is kept from the planes \[m\].
     pub margin: f32,
 }
 
-impl Solid for Seen<'_> {
+impl Solid for ContactPlanes<'_> {
     const CONVEX: bool = false;
     const COMMON: bool = true;
 
@@ -118,8 +118,8 @@ fn outdated_with<S: Simd>(
             let moved = local - place;
             let holds = Reading(&patches.holds).load_at(simd, window);
             let free = Reading(inv_mass).load_at(simd, window).simd_gt(zero);
-            let still = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
-            let out = free & window.todo(simd) & !still;
+            let valid = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
+            let out = free & window.todo(simd) & !valid;
             if out.any_true() {
                 let lanes = out.select(one, zero);
                 for (k, lane) in lanes.as_slice().iter().enumerate() {

@@ -21,7 +21,7 @@ use super::{
     lanes::{Factor, Shared, SharedPoints, V3, WIDEST},
     lines::{FREE, Lines, NO_MASS, PRESSED, apply},
     row::{beside, own},
-    share::{Bounds, share},
+    share::{TensionBounds, share},
 };
 use crate::topology::chains::OPEN;
 
@@ -47,7 +47,7 @@ pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
         n: normal::<S, CONTACT>(simd, lines, 0),
     };
     let first = ring.first_multiplier();
-    let bounds = Bounds::new(bears, lines.give);
+    let bounds = TensionBounds::new(bears, lines.give);
     let taut = if bounds.gives() {
         ring.substitute::<true>(first, bounds)
     } else {
@@ -327,7 +327,11 @@ impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
     /// Substitutes back from the multiplier of the first edge. Returns the range of edges whose tension beyond the stable limit [`share`]
     /// needs.
     #[inline(always)]
-    fn substitute<const GIVES: bool>(self, first: S::f32s, bounds: Bounds<S>) -> Range<usize> {
+    fn substitute<const GIVES: bool>(
+        self,
+        first: S::f32s,
+        bounds: TensionBounds<S>,
+    ) -> Range<usize> {
         let Self {
             simd,
             lines,

@@ -34,7 +34,7 @@ use super::{
 /// ([`super::edges::Whole::bears`]): with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave
 /// across the line is pulled back by more than κ of itself.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds<S: Simd> {
+pub(super) struct TensionBounds<S: Simd> {
     give: Give,
     /// Stable limit: the most that acts along edges as they are predicted to lie.
     borne: S::f32s,
@@ -43,7 +43,7 @@ pub(super) struct Bounds<S: Simd> {
     pushes: S::f32s,
 }
 
-impl<S: Simd> Bounds<S> {
+impl<S: Simd> TensionBounds<S> {
     #[inline(always)]
     pub fn new(bears: S::f32s, give: Give) -> Self {
         let [borne, pulls, pushes] = [LARGEST_KAPPA, give.pull, give.push].map(|k| bears * k);

@@ -289,11 +289,11 @@ pub fn nearest<Q: Solid>(solid: &Q, motion: &Motion, i: usize, [from, to]: [Vec3
     let start = inverse * (motion.turn * (from - motion.from));
     let end = inverse * (to - motion.to);
     let (mut distance, mut out) = near_one(solid, i, end);
-    let (way, size) = (start.distance_squared(end), solid.size());
-    let long = way > LONG * LONG * size * size;
+    let (length2, size) = (start.distance_squared(end), solid.size());
+    let long = length2 > LONG * LONG * size * size;
     if Q::CONVEX
         && long
-        && (distance < 0.0 || distance * distance < way)
+        && (distance < 0.0 || distance * distance < length2)
         && let Some(met) = sweep(solid, i, start, end)
     {
         (distance, out) = met;

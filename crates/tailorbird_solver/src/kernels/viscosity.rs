@@ -14,8 +14,8 @@
 //! # Several threads
 //!
 //! Blocks of rows can be moved at the same time. Each needs the velocities of the row above it and the row below it, as they were before
-//! any block moved, so there are two phases: first [`Motion::save_row`] saves the velocities of the first and the last row of every block,
-//! and when all are saved, [`Motion::sweep`] moves each block, with the saved rows of its neighbours. One block of all rows needs no first
+//! any block moved, so there are two phases: first [`SheetMotion::save_row`] saves the velocities of the first and the last row of every block,
+//! and when all are saved, [`SheetMotion::sweep`] moves each block, with the saved rows of its neighbours. One block of all rows needs no first
 //! phase.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
@@ -41,7 +41,7 @@ const KEPT: usize = 3;
 
 /// A substep of a sheet without its constraints: inertia and viscosity.
 #[derive(Clone, Copy)]
-pub struct Motion<'a> {
+pub struct SheetMotion<'a> {
     pub sheet: Sheet<'a>,
     /// Positions a substep before \[m\].
     pub previous: SharedPoints<'a>,
@@ -56,14 +56,14 @@ pub struct Motion<'a> {
     pub verlet: Verlet,
 }
 
-/// Velocities of the rows above and below a block, from [`Motion::save_row`]; `None` at the border of the sheet.
+/// Velocities of the rows above and below a block, from [`SheetMotion::save_row`]; `None` at the border of the sheet.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
     pub above: Option<&'a [f32]>,
     pub below: Option<&'a [f32]>,
 }
 
-impl Motion<'_> {
+impl SheetMotion<'_> {
     /// Checks that each array has one element for each particle.
     ///
     /// # Panics

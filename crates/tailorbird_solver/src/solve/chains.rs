@@ -15,7 +15,7 @@ use crate::{
         spring::alpha_tilde,
         tether,
         verlet::Verlet,
-        viscosity::{self, Beside, Motion},
+        viscosity::{self, Beside, SheetMotion},
     },
     particles::{Input, Particles, Scratch, State},
     substep::Substep,
@@ -296,7 +296,7 @@ pub fn integrate(
         let area = lattice.spacing.x * lattice.spacing.y;
         // ν = c L²/(4 h) on a square grid.
         let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
-        let motion = Motion {
+        let motion = SheetMotion {
             sheet: Sheet {
                 columns: lattice.columns as usize,
                 rows: lattice.rows as usize,
@@ -334,7 +334,7 @@ pub fn integrate(
 }
 
 /// Moves a sheet, in blocks of rows, one for each part of the workers.
-fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
+fn sweep(substep: &Substep, motion: SheetMotion, scratch: &mut Vec<f32>) {
     let (level, workers) = (substep.level, substep.workers);
     let rows = motion.sheet.rows;
     let part = workers.part(rows);

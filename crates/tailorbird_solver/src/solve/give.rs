@@ -20,7 +20,7 @@ const TETHER_SPEED: f32 = 0.05;
 const TETHER_RATE: f32 = 0.5;
 
 /// Factor of both while the cloth comes to rest [-].
-const SETTLING: f32 = 30.0;
+const RECOVERED: f32 = 30.0;
 
 /// Softness of strained lines.
 struct Softness {
@@ -59,8 +59,8 @@ impl Pass<'_> {
         start: SharedPoints<'b>,
     ) -> Option<Recovery<'b>> {
         let size = self.size().max(SMALLEST);
-        let times = if effort.recovers { 1.0 } else { SETTLING };
-        (effort.settles() || fresh).then(|| Recovery {
+        let times = if effort.recovers { 1.0 } else { RECOVERED };
+        (effort.is_slowed() || fresh).then(|| Recovery {
             start,
             least: 2.0 * times * TETHER_SPEED * self.seconds / size,
             part: (times * TETHER_RATE * self.seconds).min(1.0),

@@ -1,11 +1,11 @@
 //! Stages of a substep within the cloth: inertia, then constraints, then damping of tangles.
 
-mod calm;
 mod chains;
 mod classic;
 mod fabric;
 mod give;
 mod slowing;
+mod tangles;
 
 use crate::{
     cloth::Cloth,
@@ -21,7 +21,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
-    particles.calm_strained(seconds, substep.out());
+    particles.damp_strained(seconds, substep.out());
     let verlet = Verlet {
         seconds,
         seconds_before: particles.state.substep_seconds,
@@ -85,7 +85,7 @@ pub fn solve(substep: &Substep, cloth: &mut Cloth) {
                 pass.solve(cloth.tethers, cloth.particles);
             }
             let size = chains::Pass::of(substep, topology, material, 0).size();
-            (cloth.particles).slow_strained(substep.seconds, [substep.out(), size]);
+            (cloth.particles).limit_strained(substep.seconds, [substep.out(), size]);
         }
         Method::Springs => {
             classic::solve(substep, topology, material, cloth.particles);
@@ -108,7 +108,7 @@ pub fn calm(substep: &Substep, cloth: &mut Cloth) {
         let longest = pass.slack() + effort::STRAIN;
         let seconds = substep.seconds * substep.count as f32;
         let (level, particles) = (substep.level, &mut *cloth.particles);
-        calm::calm(level, cloth.topology, longest, seconds, particles);
+        tangles::damp(level, cloth.topology, longest, seconds, particles);
         cloth.particles.disturb(cloth.topology);
     }
 }

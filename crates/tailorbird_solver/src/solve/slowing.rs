@@ -15,7 +15,7 @@ const FAR: f32 = 1.5;
 const RATE: f32 = 8.0;
 
 /// Rate at which the motion of a strained cloth decays, as seen from its holders [1/s].
-const CALMED: f32 = 3.0;
+const DECAY: f32 = 3.0;
 
 /// Least part, in a lull, of the speed at which a cloth comes out of a collider [-].
 const LEAST_OUT: f32 = 0.1;
@@ -30,7 +30,7 @@ fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
 /// Motion of the holders and colliders of a strained cloth, from which its own motion is seen.
 struct Led {
     /// Mean displacement of most holders since the start of the substep; that of the whole cloth without holders \[m\].
-    way: Vec3,
+    displacement: Vec3,
     /// Displacement of holders and colliders that bounds that of the cloth \[m\].
     reach: f32,
     /// Largest displacement of a holder or collider \[m\].
@@ -56,10 +56,10 @@ impl Particles {
             .iter()
             .enumerate()
             .filter(|(_, w)| **w == 0.0);
-        let ways = (held.clone())
+        let displacements = (held.clone())
             .map(|(i, _)| self.state.position.get(i) - self.state.previous_position.get(i));
         lengths.clear();
-        lengths.extend(ways.clone().map(Vec3::length));
+        lengths.extend(displacements.clone().map(Vec3::length));
         let farthest = lengths.iter().copied().fold(0.0, f32::max);
         let touching = if self.state.touch.any {
             self.state.touch.swept
@@ -79,7 +79,7 @@ impl Particles {
                 &self.state.previous_position,
             );
             return Led {
-                way: whole.displacement,
+                displacement: whole.displacement,
                 // The ground stops a falling cloth.
                 reach: whole.displacement.length() + swept,
                 farthest: touching,
@@ -89,12 +89,12 @@ impl Particles {
         };
         let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
         // A holder that jumps away from the others leads nobody.
-        let most = ways.filter(|way| way.length() <= 1.5 * middle);
-        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), way| {
-            (sum + way, count + 1.0)
+        let most = displacements.filter(|displacement| displacement.length() <= 1.5 * middle);
+        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), displacement| {
+            (sum + displacement, count + 1.0)
         });
         Led {
-            way: sum / f32::max(count, 1.0),
+            displacement: sum / f32::max(count, 1.0),
             reach: middle.max(swept),
             farthest: farthest.max(touching),
             apart: extent(held.map(|(i, _)| self.state.position.get(i))),
@@ -103,17 +103,21 @@ impl Particles {
     }
 
     /// Slows a strained cloth, as seen from its holders, during a substep. `out` is the distance by which colliders push \[m\].
-    pub fn calm_strained(&mut self, seconds: f32, out: f32) {
+    pub fn damp_strained(&mut self, seconds: f32, out: f32) {
         if !self.state.effort.recovers {
             return;
         }
-        let Led { way, reach, .. } = self.led(out);
+        let Led {
+            displacement,
+            reach,
+            ..
+        } = self.led(out);
         let most = (self.state.effort.speed() + self.state.effort.driven) * seconds + reach;
-        let part = 1.0 - (-CALMED * seconds).exp();
+        let part = 1.0 - (-DECAY * seconds).exp();
         for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
                 let before = self.state.previous_position.get(i);
-                let moved = self.state.position.get(i) - before - way;
+                let moved = self.state.position.get(i) - before - displacement;
                 let kept = ((1.0 - part) * moved).clamp_length_max(most);
                 self.state.previous_position.set(i, before + moved - kept);
             }
@@ -122,19 +126,19 @@ impl Particles {
 
     /// Takes back displacements by constraints of a strained cloth that are beyond the bound of a substep. `out` is the distance by which
     /// colliders push, and `size` the size of the cloth \[m\].
-    pub fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
+    pub fn limit_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
         if self.state.touch.any {
             let speed = self.state.touch.swept / seconds;
             self.state.effort.struck = self.state.effort.struck.max(speed);
         }
-        if !self.state.effort.settles() {
+        if !self.state.effort.is_slowed() {
             return;
         }
         let led = self.led(out);
-        let around = [led.held, self.state.touch.colliders];
+        let contacts = [led.held, self.state.touch.colliders];
         let driven = self.state.effort.driven;
         let fastest = driven.max(led.farthest / seconds);
-        self.state.effort.pass(seconds, fastest, around);
+        self.state.effort.pass(seconds, fastest, contacts);
         let mut speed = 2.0 * self.state.effort.speed() + driven;
         if !self.state.touch.any {
             let far = f32::max(FAR * size, led.apart + size);
@@ -143,7 +147,7 @@ impl Particles {
         let most = speed * seconds + led.reach;
         for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let start = self.state.previous_position.get(i) + led.way;
+                let start = self.state.previous_position.get(i) + led.displacement;
                 let moved = self.state.position.get(i) - start;
                 if moved.length_squared() > most * most {
                     self.state

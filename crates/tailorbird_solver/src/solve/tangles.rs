@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 
 use crate::{
-    effort::{Effort, Longest, Seen},
+    effort::{EdgeSurvey, Effort, Longest},
     grant::Threads,
     kernels::{
         lanes::{Shared, SharedPoints},
@@ -19,7 +19,7 @@ use crate::{
 
 /// Damps tangled particles: an edge compressed below 70 % of its rest length gets the rigid motion of the whole cloth. Conserves momentum
 /// if the cloth is free.
-pub fn calm(
+pub fn damp(
     level: Level,
     topology: &Topology,
     allowed: f32,
@@ -54,13 +54,13 @@ pub fn calm(
                 times: survey.longest,
                 part: survey.longest / side,
             };
-            let seen = Seen {
+            let edges = EdgeSurvey {
                 strained: survey.strained,
                 longest,
                 granted: grant.is_much(),
                 is_mesh: false,
             };
-            effort.see(seen, *touch);
+            effort.update(edges, *touch);
         } else {
             *effort = Effort::default();
         }
@@ -99,13 +99,13 @@ pub fn calm(
                 times: far.sqrt(),
                 part: farthest.sqrt() / fabric.size(),
             };
-            let seen = Seen {
+            let edges = EdgeSurvey {
                 strained: part,
                 longest,
                 granted: !grant.is_empty(),
                 is_mesh: true,
             };
-            effort.see(seen, *touch);
+            effort.update(edges, *touch);
         } else {
             *effort = Effort::default();
         }

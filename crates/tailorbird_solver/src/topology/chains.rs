@@ -134,7 +134,7 @@ impl Chains {
         &mut self,
         family: EdgeFamily,
         cover: &Cover,
-        batches: &[layout::Batch],
+        batches: &[layout::LaneChains],
         number: &[u32],
         rest_positions: &[Vec3],
         weave: &Weave,

@@ -12,7 +12,7 @@ use super::mesh_edges::MeshEdges;
 mod frame;
 mod gaps;
 
-use frame::{Frame, along_v, conjugate, root, square};
+use frame::{TriangleFrame, along_v, conjugate, root, square};
 
 /// Cosine of four times the largest angle to the nearest axis at which an edge follows a thread: 27.5°.
 ///
@@ -71,10 +71,10 @@ impl Weave {
         edges: &MeshEdges,
         uvs: Option<&[[Vec2; 3]]>,
     ) -> Self {
-        let surface = Surface {
+        let surface = FramedMesh {
             frames: triangles
                 .iter()
-                .map(|t| Frame::new(t.map(|i| rest_positions[i as usize])))
+                .map(|t| TriangleFrame::new(t.map(|i| rest_positions[i as usize])))
                 .collect(),
             triangles,
             edges,
@@ -149,13 +149,13 @@ struct Leaning {
 /// A step from one triangle to the next: the side that is left and the side that is entered.
 type Step = [u32; 2];
 
-struct Surface<'a> {
-    frames: Vec<Frame>,
+struct FramedMesh<'a> {
+    frames: Vec<TriangleFrame>,
     triangles: &'a [[u32; 3]],
     edges: &'a MeshEdges,
 }
 
-impl Surface<'_> {
+impl FramedMesh<'_> {
     /// Square of the warp's direction in each triangle. `given` is the warp in some of them.
     fn threads(&self, given: impl Fn(usize) -> Option<Vec3>) -> Vec<Vec2> {
         let mut threads = vec![Vec2::X; self.frames.len()];
@@ -363,11 +363,11 @@ impl Surface<'_> {
     }
 }
 
-fn square_of(surface: &Surface, side: u32) -> Vec2 {
+fn square_of(surface: &FramedMesh, side: u32) -> Vec2 {
     surface.frames[side as usize / 3].sides[side as usize % 3]
 }
 
-fn fourth_of(surface: &Surface, side: u32) -> Vec2 {
+fn fourth_of(surface: &FramedMesh, side: u32) -> Vec2 {
     square(square_of(surface, side))
 }
 

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     kernels::{
         half_space::{self, MovingHalfSpace},
-        patches::{Patches, Seen, outdated},
+        patches::{ContactPlanes, Patches, outdated},
         solid::{self, Motion},
         terrain::Terrain,
     },
@@ -96,7 +96,7 @@ proptest! {
             patches.set(i, from, normal, Vec3::ZERO, 1.0);
             prop_assert!((patches.height(i, *to) - normal.dot(to - from)).abs() < 1e-6);
         }
-        let seen = Seen { patches: &patches, margin };
+        let seen = ContactPlanes { patches: &patches, margin };
         let motion = Motion { from: Vec3::ZERO, to: Vec3::ZERO, axes: Mat3::IDENTITY, turn: Mat3::IDENTITY, friction };
         let all = 0..particles.from.len();
         let is = particles.collide(|touching| solid::collide_all(Level::new(), &seen, &motion, touching, all));

@@ -10,7 +10,7 @@ use crate::{
         lanes::SharedPoints,
         rigid_motion::RigidMotion,
         verlet::Verlet,
-        viscosity::{Beside, LARGEST, Motion},
+        viscosity::{Beside, LARGEST, SheetMotion},
     },
     points::Points,
 };
@@ -33,7 +33,7 @@ impl Moving {
         let mut lost = Points::zeroed(self.previous.len());
         let acceleration = (self.acceleration.as_ref()).map(|all| all.iter().copied().collect());
         let moved = self.cloth.solved(|sheet| {
-            let motion = Motion {
+            let motion = SheetMotion {
                 sheet,
                 previous: SharedPoints::new(&mut previous),
                 lost: SharedPoints::new(&mut lost),

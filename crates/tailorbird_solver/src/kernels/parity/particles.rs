@@ -15,7 +15,7 @@ use super::{
         rigid_motion::RigidMotion,
         sphere::{self, MovingSphere},
         verlet::Verlet,
-        viscosity::{Beside, Motion},
+        viscosity::{Beside, SheetMotion},
     },
     SIZES, State, blocks, noise, same,
 };
@@ -59,7 +59,7 @@ fn viscosity() {
                     displacement: Vec3::new(0.01, -0.02, 0.03),
                     rotation: Vec3::new(0.03, 0.01, -0.02),
                 };
-                let motion = Motion {
+                let motion = SheetMotion {
                     sheet: Sheet {
                         columns: state.columns,
                         rows: state.rows,
@@ -104,7 +104,7 @@ fn viscosity() {
 fn viscosity_keeps_momentum_and_is_inertia_without_it() {
     let motion_of = |state: &mut State, conductance: f32, rigid: RigidMotion| {
         let rows = state.rows;
-        let motion = Motion {
+        let motion = SheetMotion {
             sheet: Sheet {
                 columns: state.columns,
                 rows,

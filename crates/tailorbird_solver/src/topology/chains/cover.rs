@@ -79,7 +79,7 @@ impl Cover {
     }
 
     /// Adds the parts of a path that touch no particle in `used` (marked with `pass`), and returns the edges left over.
-    fn push(&mut self, path: &Path, used: &mut [u32], pass: u32, left: &mut Vec<u32>) {
+    fn push(&mut self, path: &Walk, used: &mut [u32], pass: u32, left: &mut Vec<u32>) {
         if self.starts.is_empty() {
             self.starts.push(0);
         }
@@ -107,7 +107,7 @@ impl Cover {
     }
 
     /// Adds a path that is a ring and touches no particle in `used`. Returns whether it did.
-    fn push_ring(&mut self, path: &Path, used: &mut [u32], pass: u32) -> bool {
+    fn push_ring(&mut self, path: &Walk, used: &mut [u32], pass: u32) -> bool {
         let Some((last, particles)) = path.particles.split_last() else {
             return false;
         };
@@ -155,7 +155,7 @@ impl Cover {
 
 /// A walk along edges that continue one another; may cross itself.
 #[derive(Debug, Default)]
-struct Path {
+struct Walk {
     particles: Vec<u32>,
     edges: Vec<u32>,
 }
@@ -184,7 +184,7 @@ pub(super) fn cover(
     cover
 }
 
-fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
+fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Walk> {
     let ends = |local: u32| weave.ends[edges[local as usize / 2] as usize];
     let at = |half: u32| ends(half)[half as usize % 2];
     let next = continuations(edges, rest_positions, weave);
@@ -196,7 +196,7 @@ fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
         if seen[start as usize / 2] {
             continue;
         }
-        let mut path = Path {
+        let mut path = Walk {
             particles: vec![at(start)],
             edges: Vec::new(),
         };
@@ -263,8 +263,8 @@ fn continuations(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<u
 
 /// Rotates a closed path so that it starts at the particle that lies furthest in a direction along no axis: rings side by side then start
 /// side by side. Its last edge comes from the neighbour with the lower index.
-fn turn(path: &mut Path, rest_positions: &[Vec3]) {
-    let height = |path: &Path, i: &usize| {
+fn turn(path: &mut Walk, rest_positions: &[Vec3]) {
+    let height = |path: &Walk, i: &usize| {
         let p = rest_positions[path.particles[*i] as usize];
         p.dot(Vec3::new(0.48, 0.71, 0.52))
     };

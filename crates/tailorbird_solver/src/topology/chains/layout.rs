@@ -9,14 +9,18 @@ const SIMILAR: f32 = 0.85;
 
 /// Up to [`LANES`] chains, each with a flag: it runs from its end to its start.
 #[derive(Debug, Default)]
-pub(super) struct Batch {
+pub(super) struct LaneChains {
     pub(super) lanes: Vec<(usize, bool)>,
     /// Particles along the longest chain.
     pub(super) length: usize,
 }
 
 /// Batches of chains that lie side by side on the mesh and run in the same direction.
-pub(super) fn side_by_side(cover: &Cover, rest_positions: &[Vec3], weave: &Weave) -> Vec<Batch> {
+pub(super) fn side_by_side(
+    cover: &Cover,
+    rest_positions: &[Vec3],
+    weave: &Weave,
+) -> Vec<LaneChains> {
     let chord = |chain: usize| {
         let particles = cover.particles(chain);
         let [first, last] = [0, particles.len() - 1].map(|i| rest_positions[particles[i] as usize]);
@@ -34,7 +38,7 @@ pub(super) fn side_by_side(cover: &Cover, rest_positions: &[Vec3], weave: &Weave
 }
 
 /// Batches of chains in the order of their particles' storage numbers.
-pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
+pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<LaneChains> {
     let mut chains: Vec<(u32, usize, bool)> = (0..cover.len())
         .map(|chain| {
             let particles = cover.particles(chain);
@@ -52,8 +56,8 @@ pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
 }
 
 /// Fills batches with chains of similar length, or rings, in the order of the iterator as far as that allows.
-fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch> {
-    let mut batches: Vec<Batch> = Vec::new();
+fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<LaneChains> {
+    let mut batches: Vec<LaneChains> = Vec::new();
     // The batches that still have room, with the length of their first chain, and whether it is a ring.
     let mut open: Vec<(usize, f32, bool)> = Vec::new();
     for (chain, reversed) in chains {
@@ -64,7 +68,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
             .position(|(_, like, ring)| fits(*like) && *ring == cover.is_ring(chain))
             .unwrap_or_else(|| {
                 open.push((batches.len(), length as f32, cover.is_ring(chain)));
-                batches.push(Batch::default());
+                batches.push(LaneChains::default());
                 open.len() - 1
             });
         let batch = &mut batches[open[place].0];
@@ -82,7 +86,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
     rest.sort_by_key(|(chain, _)| std::cmp::Reverse(cover.particles(*chain).len()));
     batches.retain(|batch| !batch.lanes.is_empty());
     batches.extend(rest.chunks(LANES).map(|lanes| {
-        Batch {
+        LaneChains {
             lanes: lanes.to_vec(),
             length: lanes
                 .iter()
@@ -95,7 +99,12 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
 }
 
 /// Original index of each particle in storage order: first the particles of the batches, then the others, each near its neighbours.
-pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &Weave) -> Vec<u32> {
+pub(super) fn order(
+    cover: &Cover,
+    batches: &[LaneChains],
+    particles: usize,
+    weave: &Weave,
+) -> Vec<u32> {
     let mut order = Vec::with_capacity(particles);
     let mut number = vec![NONE; particles];
     for batch in batches {
@@ -130,7 +139,7 @@ pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &
 
 /// All chains in an order in which neighbours follow each other where possible; with each, a chain beside it that comes earlier.
 fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<usize>)> {
-    let beside = Beside::new(cover, particles, weave);
+    let beside = Adjacency::new(cover, particles, weave);
     let mut seen = vec![false; cover.len()];
     let mut walk: Vec<(usize, Option<usize>)> = Vec::with_capacity(cover.len());
     let mut marks = vec![0; cover.len()];
@@ -159,12 +168,12 @@ fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<us
 }
 
 /// Adjacency of chains, with the number of edges between two.
-struct Beside {
+struct Adjacency {
     starts: Vec<usize>,
     chains: Vec<(u32, u32)>,
 }
 
-impl Beside {
+impl Adjacency {
     fn new(cover: &Cover, particles: usize, weave: &Weave) -> Self {
         let mut chain_of = vec![NONE; particles];
         for chain in 0..cover.len() {

@@ -15,7 +15,7 @@ pub(super) fn along_v([a, b, c]: [Vec3; 3], [p, q, r]: [Vec2; 3]) -> Option<Vec3
 }
 
 /// Coordinates in the plane of a triangle.
-pub(super) struct Frame {
+pub(super) struct TriangleFrame {
     /// Unit vector along the first side.
     pub(super) x: Vec3,
     pub(super) y: Vec3,
@@ -27,7 +27,7 @@ pub(super) struct Frame {
     pub(super) diagonal: Option<usize>,
 }
 
-impl Frame {
+impl TriangleFrame {
     pub(super) fn new(corners: [Vec3; 3]) -> Self {
         let sides = [0, 1, 2].map(|k| corners[(k + 1) % 3] - corners[k]);
         let normal = sides[0].cross(sides[1]);

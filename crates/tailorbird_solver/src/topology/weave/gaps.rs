@@ -8,7 +8,7 @@ use super::{EdgeFamily, Leaning, Weave};
 const NEAR: f32 = -0.94;
 
 /// Cosine of the angle between two edges at a particle above which they leave it in the same direction.
-const SAME_WAY: f32 = 0.25;
+const SAME_DIRECTION: f32 = 0.25;
 
 /// Makes askew edges follow a thread where, at both ends, no other edge that follows it leaves in the same direction: the edge that lies
 /// best first. Else a thread would end there, and its tension would be borne by shear alone.
@@ -49,11 +49,11 @@ pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[V
     for gap in gaps {
         let family = leanings[gap].family;
         let ends_at = |i: u32| {
-            let way = along(weave, gap, i);
+            let direction = along(weave, gap, i);
             edges[starts[i as usize]..starts[i as usize + 1]]
                 .iter()
                 .filter(|e| weave.family[**e] == family)
-                .all(|e| along(weave, *e, i).dot(way) < SAME_WAY)
+                .all(|e| along(weave, *e, i).dot(direction) < SAME_DIRECTION)
         };
         let [a, b] = weave.ends[gap];
         if ends_at(a) && ends_at(b) {
