@@ -33,23 +33,23 @@ use crate::{
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct MotionState {
-    /// How far particles may get from their targets.
+    /// Bounds of the distance of particles from their targets.
     #[reflect(ignore)]
     pub(crate) limits: MotionLimits,
     /// Particles whose largest distance is 0.
     #[reflect(ignore)]
     held: Vec<u32>,
-    /// Whether the targets move in this step.
+    /// True if the targets move in this step.
     moving: bool,
     disturbed: bool,
-    /// How far the target goes in this step that goes furthest \[m\].
+    /// Largest displacement of a target in this step \[m\].
     furthest: f32,
-    /// Which targets they were aimed at.
+    /// Identity of the targets that they were aimed at.
     aimed: [u64; 3],
     hops: HopDetector,
-    /// Whether a step was left out.
+    /// True if a step was left out.
     idle: bool,
-    /// Of the topology.
+    /// Revision of the topology.
     revision: u64,
 }
 
@@ -189,12 +189,12 @@ pub fn prepare_motion(
 }
 
 impl MotionState {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.limits.memory_bytes() + heap(&self.held)
     }
 
-    /// Whether the targets move on, however slowly.
+    /// Returns whether the targets move, however slowly.
     pub(crate) fn is_led(&self) -> bool {
         self.furthest > STANDS
     }
@@ -203,7 +203,7 @@ impl MotionState {
         self.disturbed
     }
 
-    /// Where a target is at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
+    /// Target at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -306,7 +306,7 @@ impl MotionState {
         self.moving = true;
     }
 
-    /// How far the target moves in this step that moves furthest \[m\].
+    /// Largest displacement of a target in this step \[m\].
     fn furthest(&self) -> f32 {
         let [start, end] = &self.limits.targets;
         let squared = start.iter().zip(end.iter());

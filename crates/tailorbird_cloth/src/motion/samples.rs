@@ -1,4 +1,4 @@
-//! Where targets are when a step wants to know: what [`sampling`](crate::sampling) does for entities.
+//! Sampled targets: positions at the times of steps, as [`sampling`](crate::sampling) has poses of entities.
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
@@ -16,10 +16,10 @@ use crate::{
     settings::ClothSettings,
 };
 
-/// As many as are needed where frames are about equally long.
+/// Number of kept frames: enough if frames are about equally long.
 const KEPT: usize = 4;
 
-/// Where the targets were in the last frames. Comes with [`ClothMotionTargets`].
+/// Targets of the last frames. Comes with [`ClothMotionTargets`].
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct TargetSamples {
@@ -30,20 +30,20 @@ pub struct TargetSamples {
     versions: u64,
     #[reflect(ignore)]
     changed: Option<Tick>,
-    /// When this step of the fixed loop began.
+    /// Change tick at the start of this step of the fixed loop.
     #[reflect(ignore)]
     began: Option<Tick>,
-    /// For how many steps more they count as moved by the fixed loop.
+    /// Number of steps for which they still count as moved by the fixed loop.
     fixed: u8,
     hops: HopDetector,
     frame: u64,
-    /// Whether they were put elsewhere since the last step.
+    /// True if they were put elsewhere since the last step.
     jumped: bool,
 }
 
 #[derive(Clone, Debug, Default)]
 struct SeenTargets {
-    /// Of the frame.
+    /// Number of the frame.
     number: u64,
     /// Different whenever it is set.
     version: u64,
@@ -57,7 +57,7 @@ pub(super) struct TargetsAt<'a> {
     pub positions: [&'a [Vec3]; 2],
     pub normals: [&'a [Vec3]; 2],
     pub part: f32,
-    /// Which they are.
+    /// Identity of the targets.
     pub key: [u64; 3],
 }
 
@@ -80,7 +80,7 @@ impl TargetsAt<'_> {
 }
 
 impl TargetSamples {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let lists = self
             .seen
@@ -89,12 +89,12 @@ impl TargetSamples {
         lists.map(heap).sum()
     }
 
-    /// Whether the targets were put elsewhere since this was asked last.
+    /// Returns whether the targets were put elsewhere since the last call.
     pub(super) fn take_jump(&mut self) -> bool {
         std::mem::take(&mut self.jumped)
     }
 
-    /// Whether the fixed loop moves the targets.
+    /// Returns whether the fixed loop moves the targets.
     pub(super) fn are_fixed(&self) -> bool {
         self.fixed > 0
     }
@@ -173,7 +173,7 @@ impl TargetSamples {
         seen.normals.clone_from(&targets.normals);
     }
 
-    /// How far the target gets that gets furthest \[m\].
+    /// Largest displacement of a target \[m\].
     fn furthest(&self, targets: &ClothMotionTargets) -> f32 {
         let ways = self.seen[0].positions.iter().zip(&targets.positions);
         ways.map(|(from, to)| from.distance_squared(*to))
