@@ -78,7 +78,7 @@ impl HeightField {
         self.size
     }
 
-    /// What the solver knows of it.
+    /// Field in the form of the solver.
     pub(super) fn data(&self) -> Field {
         Field {
             heights: self.heights.clone(),

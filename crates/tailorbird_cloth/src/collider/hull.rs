@@ -75,7 +75,7 @@ impl ConvexHull {
         six.sum::<f32>() / 6.0
     }
 
-    /// The same for all clones.
+    /// Identity, the same for all clones.
     pub(super) fn id(&self) -> usize {
         Arc::as_ptr(&self.data) as usize
     }

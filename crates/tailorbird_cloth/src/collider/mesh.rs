@@ -9,8 +9,8 @@ use crate::error::ClothErrorKind;
 
 /// A surface of triangles. A clone shares them.
 ///
-/// One that is closed, with all triangles counter-clockwise seen from outside, is solid: what gets inside is pushed out.
-/// Any other is a sheet, which keeps everything on the side where it is.
+/// A closed surface, with all triangles counter-clockwise seen from outside, is solid: particles that get inside are pushed out. Any other
+/// is a sheet, which keeps particles on the side where they are.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -76,7 +76,7 @@ impl TriMesh {
         &self.data.triangles
     }
 
-    /// The same for all clones.
+    /// Identity, the same for all clones.
     pub(super) fn id(&self) -> usize {
         Arc::as_ptr(&self.data) as usize
     }
