@@ -26,7 +26,7 @@ pub struct ClothBounds {
 }
 
 impl ClothBounds {
-    /// Whether a point lies inside or on the box.
+    /// Returns whether a point lies inside or on the box.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
@@ -40,7 +40,7 @@ pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<C
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`update_bounds`] does for one cloth.
+    /// Runs [`update_bounds`] for one cloth.
     pub(crate) fn update_bounds(&mut self, level: Level) {
         if let Some(bounds) = ClothBounds::around(level, &self.particles) {
             self.bounds.set_if_neq(bounds);
@@ -55,7 +55,7 @@ impl ClothBounds {
         Some(Self { min, max })
     }
 
-    /// The box as the solver has it.
+    /// Box in the form of the solver.
     pub(crate) fn bounds(self) -> Bounds {
         let Self { min, max } = self;
         Bounds { min, max }

@@ -40,7 +40,7 @@ struct Hand {
 }
 
 impl ClothGrab {
-    /// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
+    /// Largest distance of the held particle from a neighbour, as a multiple of their distance at rest.
     pub const MOST_STRETCH: f32 = tailorbird_solver::hand::MOST_STRETCH;
 
     /// Takes a particle, and those within `radius` \[m\] along the sheet (its direct neighbours at least). `target` is
@@ -72,7 +72,7 @@ impl ClothGrab {
         self.held.as_ref().map(|hand| hand.particle)
     }
 
-    /// Where the hand is in the world \[m\].
+    /// Position of the hand in the world \[m\].
     pub fn target(&self) -> Option<Vec3> {
         self.held.as_ref().map(|hand| hand.target)
     }
@@ -89,7 +89,7 @@ impl ClothGrab {
     }
 }
 
-/// How much a particle at this distance is pulled along: (1 − d²/r²)², 1 at the hand, 0 with no kink at the rim.
+/// Part of the hand's motion that a particle at this distance takes: (1 − d²/r²)², 1 at the hand, 0 with no kink at the rim.
 fn falloff(distance: f32, radius: f32) -> f32 {
     let q = (1.0 - (distance / radius).powi(2)).max(0.0);
     q * q

@@ -17,7 +17,7 @@ use crate::{
     step::ClothStep,
 };
 
-/// Which normals a cloth is shaded with.
+/// Normals that a cloth is shaded with.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -43,7 +43,7 @@ pub struct ClothNormals {
 }
 
 impl ClothNormals {
-    /// What each normal belongs to.
+    /// Shading: particles or triangles that the normals belong to.
     pub fn shading(&self) -> ClothShading {
         self.shading
     }
@@ -53,12 +53,12 @@ impl ClothNormals {
         self.current.len()
     }
 
-    /// What the normals take on the heap \[byte\].
+    /// Heap memory of the normals \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.current.memory_bytes() + self.previous.memory_bytes()
     }
 
-    /// Whether there are none yet.
+    /// Returns whether there are none yet.
     pub fn is_empty(&self) -> bool {
         self.current.is_empty()
     }
@@ -120,7 +120,7 @@ impl ClothStagesItem<'_, '_> {
         }
     }
 
-    /// What [`recompute_normals`] does for one cloth.
+    /// Runs [`recompute_normals`] for one cloth.
     pub(crate) fn recompute_normals(&mut self, level: Level, workers: Workers) {
         let (topology, shading) = (self.topology, *self.shading);
         let position = &self.particles.0.state.position;

@@ -34,7 +34,7 @@ impl ClothParticles {
         Self(Particles::at_rest(topology))
     }
 
-    /// Where a particle is in the world \[m\].
+    /// Position of a particle in the world \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -220,7 +220,7 @@ mod tests {
         ]
     }
 
-    /// What a step leaves behind beside the state has no say in the next one.
+    /// Scratch of a step has no effect on the next one.
     #[test]
     fn scratch_can_be_dropped_before_each_step() {
         for (name, scene) in scenes() {

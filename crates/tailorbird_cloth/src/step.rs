@@ -51,18 +51,18 @@ impl Default for SimdLevel {
     }
 }
 
-/// As how many of a sheet a particle of a mesh counts, by the time it takes.
+/// Number of particles of a sheet that take as much time as a particle of a mesh.
 const MESH: f32 = 8.0;
 
-/// From this many particles on (over all cloths) cloths are shared out to threads.
+/// Number of particles (over all cloths) from which on cloths are shared out to threads.
 ///
 /// Sharing out costs 15 to 30 µs for each system, about what 4,000 particles cost in the cheapest one.
 const PARALLEL_FROM: usize = 16_384;
 
-/// At most this many times as many substeps are taken for bodies that a cloth carries.
+/// Largest factor of the substeps for bodies that a cloth carries.
 const MOST_LOADED: f32 = 4.0;
 
-/// Where gravity is less, loads are compared with the cloth's weight in this [m/s²].
+/// Least gravity for the weight that loads are compared with [m/s²].
 const LEAST_GRAVITY: f32 = 1.0;
 
 impl ClothStep {
@@ -71,8 +71,7 @@ impl ClothStep {
         self.seconds
     }
 
-    /// How much time passes meanwhile for everything else \[s\]: see
-    /// [`ClothSettings::time_scale`](crate::settings::ClothSettings::time_scale).
+    /// Time that passes meanwhile for everything else \[s\]: see [`ClothSettings::time_scale`](crate::settings::ClothSettings::time_scale).
     pub fn world_seconds(&self) -> f32 {
         self.world_seconds
     }
@@ -93,7 +92,7 @@ impl ClothStep {
         self.substep
     }
 
-    /// How much of the step has passed at the end of the substep in progress, 0 to 1.
+    /// Part of the step that has passed at the end of the substep in progress, 0 to 1.
     pub fn fraction(&self) -> f32 {
         (self.substep + 1) as f32 / self.substeps.max(1) as f32
     }
@@ -113,12 +112,12 @@ impl ClothStep {
         self.elapsed
     }
 
-    /// How many steps have begun.
+    /// Number of steps that have begun.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Whether this tick simulates: not paused, and time passes.
+    /// Returns whether this tick simulates: not paused, and time passes.
     pub fn running(&self) -> bool {
         self.running
     }
@@ -128,12 +127,12 @@ impl ClothStep {
         self.level.0
     }
 
-    /// Whether it pays to share several cloths out to threads.
+    /// Returns whether it pays to share several cloths out to threads.
     pub fn parallel(&self) -> bool {
         self.parallel
     }
 
-    /// How many substeps this cloth takes where it need not keep step with others.
+    /// Number of substeps of this cloth if it need not keep step with others.
     pub(crate) fn substeps_of(
         &self,
         solver: ClothSolver,
@@ -155,8 +154,8 @@ impl ClothStep {
         self.fixed_substeps.unwrap_or_else(automatic).max(1)
     }
 
-    /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
-    /// on it, and the waves of short length that tension drives become too fast for a substep.
+    /// Factor of the substeps of a cloth for the bodies that it carries: the tension grows with their weight, and raises the speed of
+    /// transverse waves, which a substep must resolve.
     fn loaded(&self, particles: &ClothParticles) -> f32 {
         let load = particles.0.state.load;
         if load == 0.0 || !particles.0.input.inv_mass.contains(&0.0) {
@@ -263,7 +262,7 @@ pub(crate) fn begin_cloths(mut cloths: Query<(&ClothRest, &mut ClothParticles), 
     }
 }
 
-/// How many more times as many substeps as at rest a cloth wants for a storm that stretches it [-]. The classic solver does not look.
+/// Additional substeps of a cloth that a storm stretches, as a multiple of their number at rest [-]. The classic solver takes none.
 fn more_substeps(solver: ClothSolver, particles: &ClothParticles) -> f32 {
     match solver {
         ClothSolver::Chains => particles.0.state.effort.more_substeps(),

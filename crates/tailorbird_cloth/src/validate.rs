@@ -42,7 +42,7 @@ pub fn guard_finite(
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`guard_finite`] does for one cloth.
+    /// Runs [`guard_finite`] for one cloth.
     pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
         let particles = &*self.particles;
         let strained = particles.0.state.effort.unmet();
