@@ -33,48 +33,48 @@ use super::{
     scene::SIZE,
 };
 
-/// What the scenes ask for.
+/// Demands of the scenes.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Demands {
-    /// How much farther apart than the sheet is long the posts stand, as a part of 2 m.
+    /// Excess of the distance of the posts over the length of the sheet, as a part of 2 m.
     #[arg(long, value_name = "F", default_value_t = 0.1, value_parser = cli::finite, allow_hyphen_values = true)]
     pub apart: f32,
 
-    /// How much larger than the tube the ball within it is, as a part of its radius.
+    /// Excess of the ball's radius over that of the tube around it, as a part of it.
     #[arg(long, value_name = "F", default_value_t = 0.03, value_parser = cli::not_negative, allow_hyphen_values = true)]
     pub tight: f32,
 
-    /// How far a body reaches into the sheet [m].
+    /// Depth of a body within the sheet [m].
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = cli::not_negative, allow_hyphen_values = true)]
     pub depth: f32,
 
-    /// How fast the ball flies [m/s].
+    /// Speed of the ball [m/s].
     #[arg(long, value_name = "V", default_value_t = 20.0, value_parser = cli::positive, allow_hyphen_values = true)]
     pub speed: f32,
 
-    /// What is put into the cloth.
+    /// Body that is put into the cloth.
     #[arg(long, value_enum, default_value_t = Body::Ball)]
     pub body: Body,
 
-    /// How far what holds the curtain is moved in the scenes pause-move and hop [m].
+    /// Displacement of the curtain's holder in the scenes pause-move and hop [m].
     #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = cli::finite, allow_hyphen_values = true)]
     pub way: f32,
 
-    /// What holds it there.
+    /// Holder of the curtain there.
     #[arg(long, value_enum, default_value_t = Held::Attached)]
     pub held: Held,
 }
 
-/// What holds a curtain that is moved.
+/// Holder of a curtain that is moved.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// It is attached to an entity.
+    /// An entity that the curtain is attached to.
     Attached,
-    /// It is the child of an entity, and pinned.
+    /// The parent of the curtain, which is pinned.
     Child,
 }
 
-/// What happens.
+/// Scene.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     /// Swings down from two corners.
@@ -113,7 +113,7 @@ pub enum Scene {
     Grow,
 }
 
-/// What is put into a cloth.
+/// Body that is put into a cloth.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
     /// A ball with a radius of 0.3 m.
@@ -151,7 +151,7 @@ impl Body {
 const TUBE: Vec2 = Vec2::new(0.3, 1.0);
 
 impl Scene {
-    /// How long the scene lasts [s]; none where it goes on.
+    /// Duration of the scene [s]; none if it goes on.
     pub fn seconds(self, demands: &Demands) -> Option<f64> {
         Some(match self {
             Self::Posts => 5.0,
@@ -185,7 +185,7 @@ impl Scene {
         }
     }
 
-    /// Whether the sheet starts upright, and not lying at a height of 1 m.
+    /// Returns whether the sheet starts upright, and not lying at a height of 1 m.
     pub fn is_upright(self) -> bool {
         matches!(
             self,
@@ -201,14 +201,14 @@ impl Scene {
     }
 }
 
-/// What happens to the sheet from step to step.
+/// Play of a scene from step to step.
 pub struct Play {
     scene: Scene,
     demands: Demands,
     side: u32,
     /// The post that moves, or the body.
     actor: Option<Entity>,
-    /// Whether it was moved.
+    /// True if the sheet was moved.
     moved: bool,
 }
 
@@ -285,7 +285,7 @@ impl Play {
             .to_vec();
     }
 
-    /// What happens between two frames, before the step that ends at `time` [s]: while time stands still.
+    /// Events between two frames, before the step that ends at `time` [s]: while time stands still.
     pub fn interrupt(&mut self, app: &mut App, time: f32) {
         if self.scene != Scene::PauseMove || self.moved || time <= 2.0 {
             return;
@@ -375,7 +375,7 @@ pub fn cloth(args: &cli::Args) -> Cloth {
     }
 }
 
-/// Where the cloth of a scene is: rows along +z at a height of 1 m, or upright, 1 m above the ground.
+/// Pose of the cloth of a scene: rows along +z at a height of 1 m, or upright, 1 m above the ground.
 pub fn place(scene: Scene) -> Isometry3d {
     let rotation = if scene.is_upright() {
         Quat::IDENTITY
