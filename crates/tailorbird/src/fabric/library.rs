@@ -36,7 +36,7 @@ fn kinds(fabric: Fabric) -> [(&'static str, Texels); 3] {
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
 pub struct FabricLibrary {
-    /// Where there are textures.
+    /// Folder of the textures.
     folder: Option<String>,
     textures: HashMap<Fabric, Textures>,
     materials: HashMap<Key, AssetId<StandardMaterial>>,
@@ -65,7 +65,7 @@ impl FabricLibrary {
         }
     }
 
-    /// Whether all fabrics that cloths are made of look as they are to: none of their textures is still being loaded.
+    /// Returns whether all fabrics of cloths look as they are to: none of their textures is still being loaded.
     pub fn is_ready(&self) -> bool {
         let pending =
             |textures: &Textures| matches!(textures, Textures::Loading(_) | Textures::Shrinking(_));

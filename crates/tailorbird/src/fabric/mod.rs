@@ -89,7 +89,7 @@ impl Fabric {
         Self::ALL.into_iter().find(|fabric| fabric.name() == name)
     }
 
-    /// How it moves.
+    /// Material for the simulation.
     pub const fn physics(self) -> ClothMaterial {
         match self {
             Self::Silk => ClothMaterial::silk(),
@@ -102,12 +102,12 @@ impl Fabric {
         }
     }
 
-    /// How it moves and how it looks, for the entity of a cloth.
+    /// Material and look, for the entity of a cloth.
     pub fn bundle(self) -> impl Bundle {
         (self.physics(), ClothLook::new(self))
     }
 
-    /// How its surface takes light, without textures: what has a colour of its own in the mean of its texture.
+    /// Surface material without textures: a fabric with a colour of its own has the mean of its texture.
     fn surface(self, dye: Color, textured: bool) -> StandardMaterial {
         let (roughness, reflectance, through) = match self {
             Self::Silk => (0.5, 0.4, 0.3),
@@ -144,7 +144,7 @@ impl Fabric {
         }
     }
 
-    /// Whether there is nothing at some places of its texture.
+    /// Returns whether its texture has holes.
     const fn has_holes(self) -> bool {
         matches!(self, Self::Lace)
     }
@@ -159,23 +159,22 @@ impl Fabric {
     }
 }
 
-/// How a cloth looks: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
+/// Look of a cloth: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothLook {
-    /// What it is made of.
+    /// Fabric of the cloth.
     pub fabric: Fabric,
-    /// What the fabric's own colour is multiplied with.
+    /// Factor of the fabric's own colour.
     pub dye: Color,
-    /// Whether it has the textures of its fabric.
+    /// True if it has the textures of its fabric.
     pub textured: bool,
-    /// How long a unit of the texture coordinates is on the cloth \[m\]. Where it is not given, that is the size of a grid, and 1 m for
-    /// any other mesh.
+    /// Length of a unit of the texture coordinates on the cloth \[m\]. By default the size of a grid, and 1 m for any other mesh.
     pub uv_size: Option<Vec2>,
 }
 
 impl ClothLook {
-    /// As the fabric comes, undyed.
+    /// Look of a fabric, undyed.
     pub fn new(fabric: Fabric) -> Self {
         Self {
             fabric,
