@@ -6,7 +6,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// A ball around the origin.
@@ -23,9 +23,9 @@ impl Solid for Ball {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let length = p.dot(p).sqrt();
-        Near {
+        Distances {
             distance: length - self.radius,
             out: p,
             length,
@@ -46,8 +46,8 @@ impl Solid for Ground {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
-        Near {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
+        Distances {
             distance: p.y - self.margin,
             out: V3::splat(simd, Vec3::Y),
             length: S::f32s::splat(simd, 1.0),

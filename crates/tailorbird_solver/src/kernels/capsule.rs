@@ -4,7 +4,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// Convex hull of two balls on the y axis.
@@ -65,7 +65,7 @@ impl Solid for Capsule {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let height = p.y - self.bottom;
         let mut ball = height;
@@ -79,7 +79,7 @@ impl Solid for Capsule {
         };
         let radius = S::f32s::splat(simd, self.radius) - ball * self.shrinks;
         let length = out.dot(out).sqrt();
-        Near {
+        Distances {
             distance: length - radius,
             out,
             length,

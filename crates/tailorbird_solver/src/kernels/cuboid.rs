@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// Box around the origin: all points within `half_size` of it along each axis \[m\].
@@ -32,7 +32,7 @@ impl Solid for Cuboid {
 
     /// Distance from the plane of the nearest face, which is less than that from an edge.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let ((x, right), (y, up), (z, front)) = (away(simd, p.x), away(simd, p.y), away(simd, p.z));
         let x = x - self.half_size.x;
@@ -42,7 +42,7 @@ impl Solid for Cuboid {
         let on_y = y.simd_ge(distance);
         let on_x = x.simd_ge(distance) & !on_y;
         let on_z = !(on_x | on_y);
-        Near {
+        Distances {
             distance,
             out: V3 {
                 x: on_x.select(right, zero),

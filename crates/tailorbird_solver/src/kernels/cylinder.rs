@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     cuboid::away,
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// Cylinder along y around the origin.
@@ -25,14 +25,14 @@ impl Solid for Cylinder {
 
     /// Distance from its side, or from the plane of its nearest end.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let (y, up) = away(simd, p.y);
         let end = y - self.half_height;
         let from_axis = (p.x * p.x + p.z * p.z).sqrt();
         let side = from_axis - self.radius;
         let on_end = end.simd_ge(side);
-        Near {
+        Distances {
             distance: end.max(side),
             out: V3 {
                 x: on_end.select(zero, p.x),

@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Reading, V3, Window, each_window},
-    solid::{Motion, Near, Solid},
+    solid::{Distances, Motion, Solid},
 };
 use crate::{numbers::Numbers, points::Points};
 use std::ops::Range;
@@ -71,10 +71,10 @@ impl Solid for ContactPlanes<'_> {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, window: Window, p: V3<S>) -> Distances<S> {
         let out = self.patches.normal.window(simd, window, 0);
         let offset = Reading(&self.patches.offset).load_at(simd, window);
-        Near {
+        Distances {
             distance: out.dot(p) - offset - self.margin,
             out,
             // A unit vector, or 0 without a plane.

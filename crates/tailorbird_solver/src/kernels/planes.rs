@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{Reading, V3, WIDEST, Window, each_window},
-    solid::{Near, Solid, lane},
+    solid::{Distances, Solid, lane},
 };
 use crate::{numbers::Numbers, points::Points};
 
@@ -162,7 +162,7 @@ impl Solid for Planes<'_> {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let mut nearest = Nearest {
             distance: S::f32s::splat(simd, f32::MIN),
             out: V3::splat(simd, Vec3::Y),
@@ -175,7 +175,7 @@ impl Solid for Planes<'_> {
         } else {
             nearest = self.of_some(simd, p, nearest);
         }
-        Near {
+        Distances {
             distance: nearest.distance - self.margin,
             out: nearest.out,
             length: S::f32s::splat(simd, 1.0),

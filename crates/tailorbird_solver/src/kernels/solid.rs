@@ -55,7 +55,7 @@ impl Motion {
 }
 
 /// Distances of points from a solid.
-pub struct Near<S: Simd> {
+pub struct Distances<S: Simd> {
     /// Distance from the surface, negative inside \[m\].
     pub distance: S::f32s,
     /// Direction out of the solid at the nearest point of the surface.
@@ -76,7 +76,7 @@ pub trait Solid: Copy + Sync {
     fn size(&self) -> f32;
 
     /// Distances of points from the solid. `window` tells which particles they belong to.
-    fn near<S: Simd>(&self, simd: S, window: Window, point: V3<S>) -> Near<S>;
+    fn distances<S: Simd>(&self, simd: S, window: Window, point: V3<S>) -> Distances<S>;
 }
 
 /// Rotated vectors.
@@ -97,9 +97,9 @@ fn meet<S: Simd, Q: Solid>(
     window: Window,
     [start, end]: [V3<S>; 2],
     free: S::mask32s,
-) -> Near<S> {
+) -> Distances<S> {
     let zero = S::f32s::splat(simd, 0.0);
-    let mut near = solid.near(simd, window, end);
+    let mut near = solid.distances(simd, window, end);
     if !Q::CONVEX {
         return near;
     }
@@ -139,7 +139,7 @@ pub(super) fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
 #[inline(never)]
 fn near_one<Q: Solid>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
     let simd = Fallback::new();
-    let near = solid.near(simd, Window::single(i), V3::splat(simd, point));
+    let near = solid.distances(simd, Window::single(i), V3::splat(simd, point));
     let out = unit(simd, near.out, near.length);
     (near.distance.as_slice()[0], lane(out, 0))
 }
@@ -247,7 +247,7 @@ fn collide_all_with<S: Simd, Q: Solid>(
             any = true;
             let depth = (zero - near.distance).max(zero);
             let depth = contacts.pushed(simd, [start, end], (normal, depth), touching, || {
-                zero - solid.near(simd, window, local[0]).distance
+                zero - solid.distances(simd, window, local[0]).distance
             });
             let still = V3::splat(simd, Vec3::ZERO);
             let path = contacts.resolve(

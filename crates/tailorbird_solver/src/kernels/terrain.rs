@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, WIDEST, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// Heights in a grid around the origin; each cell is two triangles.
@@ -42,7 +42,7 @@ impl Solid for Terrain<'_> {
 
     /// Distance from the plane of the triangle above or below the point.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let one = S::f32s::splat(simd, 1.0);
         let zero = S::f32s::splat(simd, 0.0);
         let last = (self.resolution - UVec2::ONE).as_vec2();
@@ -76,7 +76,7 @@ impl Solid for Terrain<'_> {
         let a = inside.select(a, zero) * self.cell.x.recip();
         let b = inside.select(b, zero) * self.cell.y.recip();
         let length = (a * a + b * b + one).sqrt();
-        Near {
+        Distances {
             distance: (p.y - height) / length - self.margin,
             out: V3 {
                 x: zero - a,
