@@ -76,7 +76,7 @@ fn setup(
     commands.spawn((
         Cloth::grid(SIZE, RESOLUTION),
         ClothMaterial::silk(),
-        ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.85, 0.62, 0.10)),
+        ClothLook::new(ClothFabric::SILK).with_dye(Color::srgb(0.85, 0.62, 0.10)),
         Transform::from_xyz(0.0, 2.9, 0.0),
     ));
 

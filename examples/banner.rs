@@ -80,7 +80,7 @@ fn setup(
         Cloth::grid(Vec2::new(1.2, 1.5), UVec2::new(columns, 51)).with_origin(Vec2::new(0.5, 0.0)),
         ClothPins::particles((0..=8).map(|ring| ring * (columns - 1) / 8)),
         ClothMaterial::cotton(),
-        ClothLook::new(Fabric::Cotton).with_dye(Color::srgb(0.75, 0.12, 0.08)),
+        ClothLook::new(ClothFabric::COTTON).with_dye(Color::srgb(0.75, 0.12, 0.08)),
         Transform::from_xyz(0.0, 2.29, 0.03),
         ChildOf(boat),
     ));

@@ -37,7 +37,7 @@ fn spawn_sheet(mut commands: Commands) {
             .with(held(GridCorner::TopRight, 1.0, 1.0))
             .with(held(GridCorner::BottomLeft, -1.0, -1.0))
             .with(held(GridCorner::BottomRight, 1.0, -1.0)),
-        Fabric::Denim.bundle(),
+        ClothFabric::DENIM.bundle(),
         Transform::from_xyz(0.0, height, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2)),
     ));
 }

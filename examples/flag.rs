@@ -35,7 +35,7 @@ fn setup(
         Cloth::grid(Vec2::new(1.8, 1.2), UVec2::new(73, 49)),
         ClothPins::edges([GridEdge::Left]),
         ClothMaterial::silk(),
-        ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.93, 0.50, 0.10)),
+        ClothLook::new(ClothFabric::SILK).with_dye(Color::srgb(0.93, 0.50, 0.10)),
         Transform::from_xyz(0.03, 2.5, 0.0),
     ));
     commands.spawn((

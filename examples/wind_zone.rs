@@ -35,7 +35,7 @@ fn setup(
             Cloth::grid(Vec2::new(0.16, 1.5), UVec2::new(7, 57)).with_origin(Vec2::new(0.5, 0.0)),
             ClothPins::edges([GridEdge::Top]),
             ClothMaterial::silk(),
-            ClothLook::new(Fabric::Silk).with_dye(Color::hsl(hue, 0.6, 0.5)),
+            ClothLook::new(ClothFabric::SILK).with_dye(Color::hsl(hue, 0.6, 0.5)),
             Transform::from_xyz(apart * (k as f32 - 0.5 * (strips - 1) as f32), height, 0.0),
         ));
     }
@@ -55,7 +55,7 @@ fn setup(
                 scale: 0.4,
                 ..default()
             },
-            ..WindZone::cuboid(Vec3::new(0.4, 0.4, 1.2), 5.0 * Vec3::NEG_Z)
+            ..WindZone::cuboid(Vec3::new(0.8, 0.8, 2.4), 5.0 * Vec3::NEG_Z)
         },
         Transform::from_xyz(0.0, 0.0, -1.2),
         ChildOf(fan),

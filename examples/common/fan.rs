@@ -23,7 +23,7 @@ const SWEEP: f32 = 7.0;
 
 /// What the fan moves: a box of air before it, along its z axis.
 fn draught() -> WindZone {
-    let half_size = Vec3::new(0.34, 0.34, 0.5 * REACH);
+    let size = Vec3::new(0.68, 0.68, REACH);
     WindZone {
         falloff: 0.22,
         gusts: Gusts {
@@ -35,7 +35,7 @@ fn draught() -> WindZone {
             scale: 0.4,
             seed: 3,
         },
-        ..WindZone::cuboid(half_size, SPEED * Vec3::Z)
+        ..WindZone::cuboid(size, SPEED * Vec3::Z)
     }
 }
 

@@ -191,8 +191,8 @@ fn solver(ui: &mut Ui, settings: &mut DemoSettings, substeps_now: u32) {
 
 fn material(ui: &mut Ui, settings: &mut DemoSettings) {
     ui.horizontal_wrapped(|ui| {
-        for fabric in Fabric::ALL {
-            let name = fabric.name();
+        for fabric in ClothFabric::ALL {
+            let name = &*fabric.name;
             // A click on the one that is chosen takes its values back.
             if ui.selectable_label(settings.preset == name, name).clicked() {
                 settings.choose_preset(name);

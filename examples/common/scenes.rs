@@ -297,10 +297,10 @@ fn corners(which: &[GridCorner], at: Vec3) -> ClothPins {
 
 /// How the scene's cloth looks. What has a colour of its own is not dyed.
 pub fn look(settings: &DemoSettings) -> ClothLook {
-    let fabric = Fabric::by_name(settings.preset).unwrap_or_default();
-    let dye = match fabric {
-        Fabric::Silk | Fabric::Cotton => settings.scene.color(),
-        Fabric::Denim => Color::srgb(0.55, 0.60, 0.72),
+    let fabric = ClothFabric::by_name(settings.preset).unwrap_or_default();
+    let dye = match &*fabric.name {
+        "silk" | "cotton" => settings.scene.color(),
+        "denim" => Color::srgb(0.55, 0.60, 0.72),
         _ => Color::WHITE,
     };
     ClothLook {

@@ -211,6 +211,7 @@ fn weld_distances() {
         let shape = ClothShape::Mesh {
             positions,
             indices,
+            uvs: Vec::new(),
             weld_distance: distance,
         };
         check(
@@ -220,6 +221,23 @@ fn weld_distances() {
             mend_cloth,
         );
     }
+}
+
+#[test]
+fn texture_coordinates_that_are_too_few() {
+    let (positions, indices) = quad();
+    let shape = ClothShape::Mesh {
+        positions,
+        indices,
+        uvs: vec![Vec2::ZERO; 3],
+        weld_distance: 0.0,
+    };
+    check(
+        (Cloth { shape }, far()),
+        |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::UvCount { .. })),
+        &["uvs", "3", "none or one for each of 4 vertices"],
+        mend_cloth,
+    );
 }
 
 #[test]

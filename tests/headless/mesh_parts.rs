@@ -291,7 +291,7 @@ fn triangles_that_face_the_wrong_way_are_turned_and_lit() {
         frames(&mut app, 10);
         let topology = get::<ClothTopology>(&app, cloth);
         assert_eq!(topology.report.turned.count, 4);
-        assert!(topology.lattice.is_some(), "a grid again");
+        assert!(topology.lattice().is_some(), "a grid again");
         assert!(is_lit_from_its_fronts(mesh(&app, cloth)));
         assert!(corners(mesh(&app, cloth)).iter().all(|(_, n)| n.z > 0.99));
     }

@@ -158,11 +158,11 @@ fn scenes_bring_their_own_material_and_wind() {
 #[test]
 fn a_button_for_each_fabric_sets_how_it_moves_and_looks() {
     let mut bench = Bench::new();
-    for fabric in Fabric::ALL {
+    for fabric in ClothFabric::ALL {
         bench.settings.material.damping = 9.0;
-        bench.click(fabric.name());
-        assert_eq!(bench.settings.preset, fabric.name());
-        assert_eq!(bench.settings.material, fabric.physics());
+        bench.click(&fabric.name);
+        assert_eq!(bench.settings.preset, fabric.name);
+        assert_eq!(bench.settings.material, fabric.material);
     }
 }
 

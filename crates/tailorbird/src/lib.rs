@@ -101,10 +101,10 @@ pub mod prelude {
     };
     #[cfg(feature = "render")]
     pub use crate::{
-        fabric::{ClothFabricPlugin, ClothLook, Fabric},
+        fabric::{ClothFabric, ClothFabricPlugin, ClothLook},
         mesh::{
             ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
-            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins,
+            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins, MeshThreads,
         },
     };
     pub use tailorbird_cloth::prelude::*;

@@ -1,17 +1,16 @@
 //! The box around a cloth.
 
+mod update;
+
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::bounds::Bounds;
 
-use crate::{
-    cloth::Cloth,
-    particles::ClothParticles,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
-    step::ClothStep,
-};
+pub use update::update_bounds;
+
+use crate::particles::ClothParticles;
 
 /// The box, in the cloth's frame, around all particles after the last two steps, and so around everything interpolated
 /// between. Written by [`update_bounds`], and where nobody sees the
@@ -29,22 +28,6 @@ impl ClothBounds {
     /// Returns whether a point lies inside or on the box.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
-    }
-}
-
-/// Computes the boxes of all cloths.
-pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.update_bounds(step.level());
-    });
-}
-
-impl ClothStagesItem<'_, '_> {
-    /// Runs [`update_bounds`] for one cloth.
-    pub(crate) fn update_bounds(&mut self, level: Level) {
-        if let Some(bounds) = ClothBounds::around(level, &self.particles) {
-            self.bounds.set_if_neq(bounds);
-        }
     }
 }
 

@@ -140,3 +140,11 @@ impl Cloth {
         self.shape.rest_positions()
     }
 }
+
+impl ClothPins {
+    /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
+    pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
+        let rest = cloth.rest_positions();
+        Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))
+    }
+}

@@ -2,6 +2,7 @@
 //!
 //! ![A banner on a boat that pitches and rolls](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/banner.gif)
 
+mod prepare;
 mod split;
 
 use std::ops::Deref;
@@ -9,21 +10,15 @@ use std::ops::Deref;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::frame::Frame;
 
+pub use prepare::{advance_frames, prepare_frames};
 pub(crate) use split::split;
 pub use split::split_mirrored;
-use split::{check_shear, split_like};
-use tailorbird_solver::{frame::Frame, step::ADVANCE};
 
 use crate::{
-    cloth::Cloth,
-    collider::ClothColliders,
-    error::{ClothStatus, ErrorSource},
     inertia::{ClothInertia, TeleportMode},
-    particles::ClothParticles,
-    sampling::{SampledMotion, SampledPoses, excess},
-    stages::{ClothStages, run_stage},
-    step::ClothStep,
+    sampling::excess,
 };
 
 /// The rigid frame that a cloth's particles live in: translation and rotation of the entity. Scale is part of the rest
@@ -159,79 +154,4 @@ impl ClothFrame {
         self.frame.current = self.frame.start;
         self.frame.offset = Vec3::ZERO;
     }
-}
-
-/// Reads where the entities of the cloths are.
-///
-/// A transform that is not finite is reported, and the frame stays where it was. One that is sheared is reported, and the frame follows
-/// it without the shear.
-pub fn prepare_frames(
-    step: Res<ClothStep>,
-    poses: SampledPoses,
-    mut cloths: Query<
-        (
-            Entity,
-            &SampledMotion,
-            &mut ClothFrame,
-            Ref<ClothInertia>,
-            &ClothParticles,
-            &mut ClothStatus,
-        ),
-        With<Cloth>,
-    >,
-    commands: ParallelCommands,
-) {
-    // A pause keeps what moves meanwhile from being felt, and from being a teleport.
-    let seconds = if step.running() {
-        [step.world_seconds(), step.seconds()]
-    } else {
-        [f32::INFINITY; 2]
-    };
-    for (entity, own, mut frame, inertia, particles, mut status) in &mut cloths {
-        if inertia.is_changed() {
-            let errors = inertia.errors();
-            if errors.is_empty() {
-                frame.inertia = *inertia;
-            }
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Inertia, errors);
-        }
-        let Ok(pose) = poses.get(entity) else {
-            continue;
-        };
-        let holds = particles.input.held.any_in_frame();
-        let how = (pose.teleported, holds);
-        let known = (frame.scale, frame.frame.end.rotation);
-        let [first, last] = own.scales();
-        let error = match split_like(&pose.end, last, known) {
-            Ok((end, scale)) => {
-                let start = split_like(&pose.start, first, known).map_or(end, |(start, _)| start);
-                frame.set_scale(scale);
-                frame.place([start, end], how, seconds);
-                check_shear(&pose.end)
-            }
-            Err(error) => {
-                let stay = frame.frame.end;
-                if frame.placed {
-                    frame.place([stay; 2], (false, holds), seconds);
-                }
-                Some(error)
-            }
-        };
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ErrorSource::Transform,
-            error,
-        );
-    }
-}
-
-/// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
-/// target.
-pub fn advance_frames(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(ADVANCE, &step, &colliders, &mut cloths);
 }

@@ -40,15 +40,16 @@
 //! }
 //! ```
 
+mod reset;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use tailorbird_solver::frame::{Felt, shortest};
 
-use crate::{
-    cloth::Cloth, error::ClothErrorKind, frame::ClothFrame, particles::ClothParticles,
-    sleep::ClothRest, topology::ClothTopology,
-};
+pub use reset::reset_teleported;
+
+use crate::error::ClothErrorKind;
 
 /// The part of its entity's motion that a cloth feels, and the bounds of a teleport. Change it at any time.
 ///
@@ -112,7 +113,8 @@ pub enum TeleportMode {
 }
 
 /// A cloth was put elsewhere, with its entity or what holds it: because its [`ClothInertia`] says so of a motion like that, by a hop
-/// ([`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed)), or by [`ClothFrame::teleport`].
+/// ([`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed)), or by
+/// [`ClothFrame::teleport`](crate::frame::ClothFrame::teleport).
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 pub struct ClothTeleported {
     /// The cloth.
@@ -217,31 +219,5 @@ impl ClothInertia {
             angular,
             spin: self.centrifugal.sqrt() * carried,
         }
-    }
-}
-
-/// Puts cloths that were teleported with [`TeleportMode::Reset`] into their rest shape.
-pub fn reset_teleported(
-    mut cloths: Query<
-        (
-            Entity,
-            &mut ClothFrame,
-            &ClothTopology,
-            &mut ClothParticles,
-            &mut ClothRest,
-        ),
-        With<Cloth>,
-    >,
-    mut commands: Commands,
-) {
-    for (entity, mut frame, topology, mut particles, mut rest) in &mut cloths {
-        let Some(mode) = frame.bypass_change_detection().take_teleport() else {
-            continue;
-        };
-        if mode == TeleportMode::Reset {
-            particles.0.reset_to_rest(topology);
-            rest.wake();
-        }
-        commands.trigger(ClothTeleported { entity, mode });
     }
 }

@@ -73,6 +73,7 @@ pub mod schedule;
 pub mod settings;
 pub mod sleep;
 pub mod slow_build;
+pub mod snapshot;
 pub mod solver;
 pub mod stages;
 pub mod step;
@@ -118,7 +119,8 @@ pub mod prelude {
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
         settings::{ClothSettings, InstructionSet},
         sleep::{ClothRest, ClothSeen, ClothSleep},
-        solver::ClothSolver,
+        snapshot::ClothSnapshot,
+        solver::{ClothSolver, ClothSubsteps},
         step::ClothStep,
         substep::{SubstepCloth, SubstepCloths, SubstepContact},
         topology::{ClothTopology, report::MeshReport},

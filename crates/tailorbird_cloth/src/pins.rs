@@ -2,22 +2,16 @@
 //!
 #![doc = include_str!("pins.md")]
 
+mod apply;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{
-    held::{Held, HeldBy, HolderKind},
-    topology::Topology,
-};
+use tailorbird_solver::topology::Topology;
 
-use crate::{
-    cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    material::ClothMaterial,
-    particles::ClothParticles,
-    topology::ClothTopology,
-    weights::ClothWeights,
-};
+pub use apply::apply_pins;
+
+use crate::{error::ClothErrorKind, weights::ClothWeights};
 
 /// The particles that are held: they move with the entity and with nothing else. Change it at any time.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
@@ -188,12 +182,6 @@ impl ClothPins {
         Self::of([PinSelection::Particles(weights.above(threshold).collect())])
     }
 
-    /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
-    pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
-        let rest = cloth.rest_positions();
-        Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))
-    }
-
     /// Adds a pin.
     pub fn with(mut self, pin: ClothPin) -> Self {
         self.pins.push(pin);
@@ -231,7 +219,7 @@ impl PinSelection {
     ) -> Result<Vec<u32>, ClothErrorKind> {
         let particles = topology.particles();
         let grid = || {
-            topology.grid.ok_or_else(|| ClothErrorKind::NotAGrid {
+            topology.grid().ok_or_else(|| ClothErrorKind::NotAGrid {
                 field: field.into(),
                 value: format!("{self:?}"),
             })
@@ -306,92 +294,5 @@ impl PinSelection {
                     .collect()
             }
         })
-    }
-}
-
-/// Turns changed pins into the list of held particles, and sets masses.
-///
-/// A pin that is wrong is reported and left out; the others hold.
-pub fn apply_pins(
-    mut cloths: Query<
-        (
-            Entity,
-            Ref<ClothPins>,
-            Ref<ClothTopology>,
-            Ref<ClothMaterial>,
-            &mut ClothParticles,
-            &mut ClothStatus,
-        ),
-        With<Cloth>,
-    >,
-    commands: ParallelCommands,
-) {
-    for (entity, pins, topology, material, mut particles, mut status) in &mut cloths {
-        if !(pins.is_changed() || topology.is_changed() || material.is_changed())
-            || particles.is_empty()
-        {
-            continue;
-        }
-        let mut errors = Vec::new();
-        let mut held = Vec::new();
-        for pin in &pins.pins {
-            if let Some(error) = pin
-                .target
-                .and_then(|t| ClothErrorKind::vector("ClothPins.target", t))
-            {
-                errors.push(error);
-                continue;
-            }
-            match pin.selection.particles(&topology) {
-                Ok(selected) => {
-                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)));
-                }
-                Err(error) => errors.push(error),
-            }
-        }
-        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Pins, errors);
-        particles.set_pins(&held);
-        let errors = material.errors();
-        if errors.is_empty() {
-            particles
-                .0
-                .set_masses(topology.areas(), material.areal_density);
-        } else {
-            particles.0.update_inv_masses();
-        }
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ErrorSource::Material,
-            errors,
-        );
-    }
-}
-
-impl ClothParticles {
-    /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
-    fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
-        let before = self.0.input.held.of(HolderKind::Pin);
-        let place = |particle: u32| {
-            let at = before.binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
-            match at.map(|at| before[at].by) {
-                Ok(HeldBy::Pin(place)) => place,
-                _ => self.position(particle as usize),
-            }
-        };
-        let mut held: Vec<Held> = pins
-            .iter()
-            .map(|&(particle, target)| Held {
-                particle: self.order.stored(particle),
-                by: HeldBy::Pin(target.unwrap_or_else(|| place(particle))),
-            })
-            .collect();
-        // Stable, so that the last of several pins of a particle can be kept.
-        held.sort_by_key(|pin| self.order.given(pin.particle));
-        held.reverse();
-        held.dedup_by_key(|pin| pin.particle);
-        held.reverse();
-        self.0.input.held.replace(HolderKind::Pin, held);
     }
 }

@@ -270,6 +270,7 @@ fn register_types(app: &mut App) {
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
         .register_type::<ClothSolver>()
+        .register_type::<ClothSubsteps>()
         .register_type::<ClothInertia>()
         .register_type::<ClothSleep>()
         .register_type::<ClothRest>()

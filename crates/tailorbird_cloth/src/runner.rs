@@ -72,10 +72,17 @@ pub(crate) fn simulate_cloths(
     let simulate = |cloth: &mut ClothStagesItem, workers: Workers| {
         cloth.particles.0.begin_step();
         wind.blow(&step, workers, cloth);
-        let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
+        let count = step.substeps_of(
+            (*cloth.solver, cloth.substeps),
+            cloth.topology,
+            &cloth.particles,
+        );
         let nth = |index| step.nth_of(index, count, workers);
-        cloth.with_cloth(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
-        cloth.guard(&commands);
+        cloth.with_cloth(|cloth| {
+            let group = std::slice::from_mut(cloth);
+            solver_step::step(count, nth, &colliders.list, group);
+        });
+        cloth.guard(step.level(), &commands);
         cloth.settle(&step, &colliders);
         cloth.recompute_normals(step.level(), workers);
         cloth.update_bounds(step.level());

@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
-use tailorbird_solver::kernels::range::are_finite;
+use tailorbird_solver::step::Report;
 use tracing::warn;
 
 use crate::{
@@ -37,17 +37,19 @@ pub fn guard_finite(
     commands: ParallelCommands,
 ) {
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.guard(&commands);
+        cloth.guard(step.level(), &commands);
     });
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// Runs [`guard_finite`] for one cloth.
-    pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
-        let particles = &*self.particles;
-        let strained = particles.0.state.effort.unmet();
+    /// What [`guard_finite`] does for one cloth.
+    pub(crate) fn guard(&mut self, level: Level, commands: &ParallelCommands) {
+        let Report {
+            strained,
+            stretched,
+            non_finite,
+        } = Report::of(level, &self.particles);
         let entity = self.entity;
-        let stretched = particles.0.state.effort.stretched();
         let known = [self.status.strained(), self.status.stretched()];
         // It changes in each step, and counts as changed when it begins and ends.
         if known.map(|part| part > 0.0) != [strained, stretched].map(|part| part > 0.0) {
@@ -61,20 +63,10 @@ impl ClothStagesItem<'_, '_> {
                 "{entity}: {percent:.0} % of the edges are longer than the fabric lets them be: holds or colliders ask for more"
             );
         }
-        let all = [
-            &particles.0.state.position,
-            &particles.0.state.previous_position,
-        ];
-        if all
-            .into_iter()
-            .all(|points| are_finite(Level::new(), points))
-        {
+        let Some(particle) = non_finite else {
             return;
-        }
-        let particle = particles
-            .positions()
-            .position(|p| !p.is_finite())
-            .unwrap_or_default();
+        };
+        let particle = self.particles.order.given(particle) as usize;
         self.particles.0.reset_to_step_start();
         let (entity, status) = (self.entity, &mut self.status);
         let error = ClothErrorKind::NonFiniteState { particle };

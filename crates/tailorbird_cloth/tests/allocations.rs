@@ -108,7 +108,7 @@ fn cloth_adds_no_allocation_to_an_update() {
         world.spawn((attachment.to(hand), AttachmentOf(cloth)));
     }
     let targets = ClothMotionTargets::in_space(TargetSpace::World);
-    let limits = ClothMotionConstraints::within(0.2).with_backstop(0.1, 1.0);
+    let limits = ClothMotionConstraints::at_most(0.2).with_backstop(0.1, 1.0);
     world
         .entity_mut(cloth)
         .insert((limits, targets, ClothPinForces::default()));

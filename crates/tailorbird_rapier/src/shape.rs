@@ -49,8 +49,8 @@ fn add(shape: &dyn Shape, at: Isometry3d, margin: f32, pieces: &mut Vec<Piece>) 
             return;
         }
         TypedShape::Cuboid(cuboid) => {
-            let half_size = cuboid.half_extents;
-            push(at, ColliderShape::Cuboid { half_size });
+            let size = 2.0 * cuboid.half_extents;
+            push(at, ColliderShape::Cuboid { size });
             return;
         }
         TypedShape::Capsule(capsule) => {
@@ -209,8 +209,8 @@ mod tests {
     fn round_shapes_get_a_margin() {
         let piece = only(&Collider::round_cuboid(0.5, 1.0, 1.5, 0.1));
         assert_eq!(piece.margin, 0.1);
-        let half_size = Vec3::new(0.5, 1.0, 1.5);
-        assert_eq!(piece.shape, ColliderShape::Cuboid { half_size });
+        let size = Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(piece.shape, ColliderShape::Cuboid { size });
     }
 
     #[test]

@@ -44,6 +44,14 @@ pub enum ShapeError {
         /// The distance \[m\].
         value: f32,
     },
+    /// There are texture coordinates, but not one for each vertex.
+    #[error("Cloth mesh has {value} uvs, must be none or one for each of {vertices} vertices")]
+    UvCount {
+        /// The number of texture coordinates.
+        value: usize,
+        /// The number of vertices.
+        vertices: usize,
+    },
     /// The number of indices is not a multiple of three.
     #[error("Cloth mesh has {value} indices, must be a multiple of 3")]
     IndexCount {

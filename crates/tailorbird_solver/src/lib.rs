@@ -24,6 +24,8 @@ pub mod contact;
 #[doc(hidden)]
 pub mod effort;
 pub mod error;
+#[doc(hidden)]
+pub mod fingerprint;
 pub mod frame;
 #[doc(hidden)]
 pub mod grant;

@@ -31,7 +31,12 @@ pub enum ClothShape {
         positions: Vec<Vec3>,
         /// Three for each triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
-        /// Distance \[m\] up to which vertices become one particle, so that seams of UVs or normals hold together.
+        /// Texture coordinates of the vertices, or none. The warp runs where u is constant, as in the pattern of a garment; without, and in
+        /// triangles where they are not finite, along the edges.
+        #[cfg_attr(feature = "serialize", serde(default))]
+        uvs: Vec<Vec2>,
+        /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
+        /// hold together.
         #[cfg_attr(feature = "serialize", serde(default = "weld_distance"))]
         weld_distance: f32,
     },
@@ -61,6 +66,7 @@ impl ClothShape {
         Self::Mesh {
             positions: positions.into(),
             indices: indices.into(),
+            uvs: Vec::new(),
             weld_distance: Self::WELD_DISTANCE,
         }
     }
@@ -93,8 +99,15 @@ impl ClothShape {
             Self::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
+                if !uvs.is_empty() && uvs.len() != positions.len() {
+                    return Err(ShapeError::UvCount {
+                        value: uvs.len(),
+                        vertices: positions.len(),
+                    });
+                }
                 if !(*weld_distance >= 0.0 && weld_distance.is_finite()) {
                     return Err(ShapeError::WeldDistance {
                         value: *weld_distance,
@@ -156,6 +169,7 @@ impl ClothShape {
                 positions,
                 indices,
                 weld_distance,
+                ..
             } => Repaired::new(positions, indices, *weld_distance, Vec3::ONE).positions,
         }
     }
@@ -200,6 +214,7 @@ impl ClothShape {
             Self::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
                 [1, weld_distance.to_bits(), positions.len() as u32]
@@ -207,7 +222,9 @@ impl ClothShape {
                     .for_each(&mut write);
                 let coordinates = positions.iter().flat_map(Vec3::to_array);
                 coordinates.map(f32::to_bits).for_each(&mut write);
-                indices.iter().copied().for_each(write);
+                indices.iter().copied().for_each(&mut write);
+                let uvs = uvs.iter().flat_map(Vec2::to_array).map(f32::to_bits);
+                uvs.for_each(write);
             }
         }
         let [low, high] = halves.map(|half| u128::from(half.finish()));

@@ -242,7 +242,7 @@ impl Tethers {
 
 /// Whether ways along the sheet are straight lines.
 fn is_straight(topology: &Topology) -> bool {
-    topology.flat && topology.lattice.is_some()
+    topology.flat && topology.lattice().is_some()
 }
 
 /// The ways from these particles.
@@ -252,7 +252,7 @@ fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
     let mut anchors = anchors.iter().copied();
     [(); Tethers::MOST].map(|()| {
         let pin = anchors.next()?;
-        let ways = match (&topology.lattice, &ways) {
+        let ways = match (topology.lattice(), &ways) {
             (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
             (Some(lattice), None) => Ways::Straight(
                 *lattice,

@@ -3,16 +3,12 @@
 mod turbulence;
 
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 
 pub use turbulence::{Turbulence, WAVES, Wave, sine};
 
-/// Region in which a wind blows, in the entity's axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
-pub enum WindShape {
+/// Where a wind blows, in the axes of its entity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WindRegion {
     /// In the whole world.
     #[default]
     Everywhere,
@@ -28,22 +24,8 @@ pub enum WindShape {
     },
 }
 
-impl WindShape {
-    /// Region scaled with its entity.
-    pub fn scaled(self, scale: Vec3) -> Self {
-        let scale = scale.abs();
-        match self {
-            Self::Everywhere => self,
-            Self::Cuboid { half_size } => Self::Cuboid {
-                half_size: half_size * scale,
-            },
-            Self::Sphere { radius } => Self::Sphere {
-                radius: radius * scale.max_element(),
-            },
-        }
-    }
-
-    /// Distance of a point in the shape's axes from its border, inwards \[m\]; negative outside.
+impl WindRegion {
+    /// How far a point in the shape's axes is inside its border \[m\]; negative outside.
     pub fn depth(self, point: Vec3) -> f32 {
         match self {
             Self::Everywhere => f32::INFINITY,

@@ -58,8 +58,8 @@ fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ColliderShape, at: Affin
             gizmos.rect(square, Vec2::splat(GROUND), COLOR);
             gizmos.ray(translation, rotation * Vec3::Y, COLOR);
         }
-        ColliderShape::Cuboid { half_size } => {
-            gizmos.cube(at * Affine3A::from_scale(2.0 * *half_size), COLOR);
+        ColliderShape::Cuboid { size } => {
+            gizmos.cube(at * Affine3A::from_scale(*size), COLOR);
         }
         ColliderShape::Cylinder {
             radius,

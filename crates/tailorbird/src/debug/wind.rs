@@ -30,14 +30,14 @@ pub(super) fn draw(
         let at = transform.affine();
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
         let half = match zone.shape {
-            WindShape::Everywhere => continue,
-            WindShape::Cuboid { half_size } => {
-                gizmos.cube(at * Affine3A::from_scale(2.0 * half_size), COLOR);
-                let inner = (half_size * scale.abs() - zone.falloff).max(Vec3::ZERO);
+            WindShape::Cuboid { size } => {
+                gizmos.cube(at * Affine3A::from_scale(size), COLOR);
+                let half = 0.5 * size * scale.abs();
+                let inner = (half - zone.falloff).max(Vec3::ZERO);
                 let full =
                     Affine3A::from_scale_rotation_translation(2.0 * inner, rotation, translation);
                 gizmos.cube(full, COLOR.with_alpha(0.3));
-                half_size * scale.abs()
+                half
             }
             WindShape::Sphere { radius } => {
                 let radius = radius * scale.abs().max_element();

@@ -13,8 +13,8 @@ use tailorbird_cloth::{
 };
 
 use super::{
-    ClothMeshWrite, follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
-    vertices::Vertices,
+    ClothMeshWrite, VertexBinding, follow::Follow, from_mesh::ClothMeshSource, packed::Packed,
+    parts::MeshSource, vertices::Vertices,
 };
 use crate::drawn::ClothDrawnHolds;
 
@@ -34,6 +34,11 @@ impl ClothMesh {
     /// The meshes: one, but for a cloth that was made of several.
     pub fn parts(&self) -> &[ClothMeshPart] {
         &self.parts
+    }
+
+    /// The same, to bind vertices.
+    pub fn parts_mut(&mut self) -> &mut [ClothMeshPart] {
+        &mut self.parts
     }
 }
 
@@ -106,9 +111,24 @@ impl ClothMeshPart {
         self.entity
     }
 
-    /// For each vertex of the mesh the particle that moves it.
+    /// For each vertex of the mesh the particle that moves it; of one on a triangle, the corner that is nearest to it. In storage order.
     pub fn particle_of_vertex(&self) -> &[u32] {
-        &self.follow.particle_of_vertex
+        self.follow.bindings.particles()
+    }
+
+    /// What a vertex of the mesh follows; none where there is no such vertex.
+    pub fn binding(&self, vertex: u32) -> Option<VertexBinding> {
+        self.follow.bindings.get(vertex)
+    }
+
+    /// Binds a vertex to something else: to a point of a triangle, for a mesh that is finer than the cloth, or for what is sewn on it.
+    /// Returns whether there is such a vertex. To be done again where the mesh is built anew.
+    ///
+    /// # Panics
+    /// When it is drawn, where a particle does not exist.
+    pub fn bind(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+        self.shows = None;
+        self.follow.bind(vertex, binding)
     }
 }
 
@@ -165,7 +185,7 @@ pub(super) fn build_cloth_mesh(
             ClothShape::Mesh { positions, .. } => {
                 topology.particles_of_vertices().len() == positions.len()
             }
-            _ => topology.grid.is_some(),
+            _ => topology.is_grid(),
         };
         // A mesh that could not be written yet would be nowhere for a while.
         if current || !matches || topology.revision == 0 || normals.shading() != *shading {

@@ -20,6 +20,7 @@ use super::{
     ClothMeshOf, MeshParts, MeshPins,
     changes::Changes,
     parts::{Finder, Found, MeshSource, append},
+    plain::texture_coordinates,
 };
 
 /// Makes a cloth of the entity's `Mesh3d` or, if it has none, of all meshes below it, as soon as they are loaded: of a glTF scene, say. The
@@ -46,8 +47,10 @@ pub struct ClothFromMesh {
     pub pins: MeshPins,
     /// Meshes below the entity that become the cloth.
     pub parts: MeshParts,
-    /// True if the colours that [`Self::pins`] reads from the vertices are drawn as well. Paint is data: colours that name pins would tint
-    /// the cloth.
+    /// Where its warp and weft run.
+    pub threads: MeshThreads,
+    /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
+    /// would tint the cloth.
     pub draw_paint: bool,
 }
 
@@ -58,6 +61,7 @@ impl Default for ClothFromMesh {
             weld_distance: Cloth::WELD_DISTANCE,
             pins: MeshPins::None,
             parts: MeshParts::All,
+            threads: MeshThreads::Uvs,
             draw_paint: false,
         }
     }
@@ -76,6 +80,12 @@ impl ClothFromMesh {
         self
     }
 
+    /// With warp and weft along these.
+    pub fn with_threads(mut self, threads: MeshThreads) -> Self {
+        self.threads = threads;
+        self
+    }
+
     /// With vertices no further apart than this \[m\] as one particle.
     pub fn with_weld_distance(mut self, distance: f32) -> Self {
         self.weld_distance = distance;
@@ -83,12 +93,25 @@ impl ClothFromMesh {
     }
 }
 
+/// Where warp and weft of a mesh run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum MeshThreads {
+    /// The warp where u of the first texture coordinates is constant, the weft where v is: as in the pattern of a garment. In triangles
+    /// without texture coordinates along the edges.
+    #[default]
+    Uvs,
+    /// Along the edges that are no diagonals, for meshes whose texture coordinates say nothing about the fabric: packed charts, say.
+    Edges,
+}
+
 /// The meshes that a cloth was made of.
 #[derive(Component, Clone, Debug)]
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
     weld_distance: f32,
-    /// Number of cloths that had been made when this one was: it tells this one from those of the same shape.
+    threads: MeshThreads,
+    /// How many cloths had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
     pub left_out: Option<MeshVertexAttribute>,
@@ -217,6 +240,7 @@ impl ClothMeshSource {
     fn has_same_particles(&self, other: &Self) -> bool {
         let mut pairs = self.parts.iter().zip(&other.parts);
         self.weld_distance == other.weld_distance
+            && self.threads == other.threads
             && self.parts.len() == other.parts.len()
             && pairs.all(|(a, b)| a.is_same(b))
     }
@@ -275,13 +299,16 @@ fn make(
     let Found::Meshes(parts) = finder.find(entity, &from_mesh.parts)? else {
         return Ok(None);
     };
-    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    let (mut positions, mut indices, mut uvs) = (Vec::new(), Vec::new(), Vec::new());
     let mut meshes = Vec::with_capacity(parts.len());
     for part in &parts {
         let Some(mesh) = finder.mesh(part) else {
             return Ok(None);
         };
         append(mesh, part.to_cloth, &mut positions, &mut indices)?;
+        if from_mesh.threads == MeshThreads::Uvs {
+            uvs.extend(texture_coordinates(mesh));
+        }
         meshes.push(mesh);
     }
     let held = match held(from_mesh, &meshes, &positions, &indices) {
@@ -297,6 +324,7 @@ fn make(
     let shape = ClothShape::Mesh {
         positions,
         indices,
+        uvs,
         weld_distance: from_mesh.weld_distance,
     };
     Ok(Some(Made {
@@ -304,6 +332,7 @@ fn make(
         source: ClothMeshSource {
             parts,
             weld_distance: from_mesh.weld_distance,
+            threads: from_mesh.threads,
             made: 0,
             left_out: from_mesh.pins.paint().filter(|_| !from_mesh.draw_paint),
             pin,

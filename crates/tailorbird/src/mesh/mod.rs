@@ -1,5 +1,6 @@
 //! From particles to the picture: builds a mesh for each cloth and writes it once per frame.
 
+mod binding;
 mod build;
 mod changes;
 mod collider;
@@ -23,11 +24,12 @@ mod tangents_wanted;
 mod vertices;
 mod write;
 
+pub use binding::VertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
 pub use collider::ColliderFromMesh;
-pub use from_mesh::ClothFromMesh;
+pub use from_mesh::{ClothFromMesh, MeshThreads};
 pub use parts::MeshParts;
 pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
 pub use previous::ATTRIBUTE_PREVIOUS_POSITION;

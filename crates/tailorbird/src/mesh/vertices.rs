@@ -106,7 +106,7 @@ impl Vertices {
         shading: ClothShading,
     ) -> (Mesh, ClothMeshPart) {
         // A grid's triangles are known to its topology alone, where vertices and particles are the same.
-        if topology.grid.is_some() {
+        if topology.is_grid() {
             self.indices = topology.triangles().iter().flatten().collect();
         }
         self.turn(topology);
@@ -238,7 +238,7 @@ impl Vertices {
             self.normal_of_vertex,
             self.backs,
             tangents,
-            topology.grid.map(|grid| grid.x as usize),
+            topology.grid().map(|grid| grid.x as usize),
         );
         (mesh, ClothMeshPart::new(follow))
     }

@@ -27,7 +27,7 @@ use tailorbird_solver::{
     shape::ClothShape,
     topology::{Topology, lattice::Lattice},
     wall_clock::WallClock,
-    wind::{Turbulence, WindShape},
+    wind::{Turbulence, WindRegion},
 };
 
 /// The time of one kernel.
@@ -198,6 +198,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             &mut lost,
             None,
             &inv_mass,
+            0..inv_mass.len(),
         );
     });
     let particles = Touching {
@@ -270,7 +271,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
     let breeze = Breeze {
         velocity: Vec3::X,
         waves: Some(turbulence.waves(0.0, DVec3::ZERO)),
-        shape: WindShape::Everywhere,
+        shape: WindRegion::Everywhere,
         falloff: 0.0,
         to_own: Isometry3d::IDENTITY,
     };

@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 
-use super::scene::SIZE;
+use super::demands::SIZE;
 
 /// Pose of the moving post.
 pub fn post(time: f32, apart: f32) -> Transform {

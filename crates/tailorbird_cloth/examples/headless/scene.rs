@@ -11,15 +11,12 @@ use tailorbird_cloth::prelude::*;
 
 use super::{
     cli::{Args, Mesh, Pins, Solver},
-    demands::{self, Play},
     mesh,
     peaks::{Peaks, Seen},
+    play::{self, Play},
 };
 
-/// Width and height of the sheet [m].
-pub const SIZE: f32 = 2.0;
-
-/// Displacement of particles by a seed [m].
+/// How far a seed moves particles [m].
 const NUDGE: f32 = 1e-4;
 
 /// An app with one sheet.
@@ -153,7 +150,7 @@ impl Sheet {
     fn nudge(&mut self, args: &Args, timestep: Duration) {
         let particles = self.get::<ClothParticles>();
         let free = |i: &usize| !particles.is_pinned(*i);
-        let random = |i: usize| unit(args.seed ^ (i as u64).rotate_left(32));
+        let random = |i: usize| mesh::unit(args.seed ^ (i as u64).rotate_left(32));
         let (mass, moment) = (0..particles.len())
             .filter(free)
             .map(|i| (particles.mass(i), particles.mass(i) * random(i)))
@@ -177,7 +174,7 @@ impl Sheet {
 
 /// The sheet, held as asked for.
 fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
-    let (cloth, size) = (demands::cloth(args), args.scene.size());
+    let (cloth, size) = (play::cloth(args), args.scene.size());
     let reach = 0.5 * size - mesh::NEAR;
     let pins = match (args.pins(), args.mesh) {
         (Pins::Corners, Mesh::Grid) => ClothPins::corners(GridCorner::TOP),
@@ -210,16 +207,7 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
             solver,
             pins,
             ClothSleep::never(),
-            Transform::from_isometry(demands::place(args.scene)),
+            Transform::from_isometry(play::place(args.scene)),
         ))
         .id()
-}
-
-/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
-pub fn unit(key: u64) -> f32 {
-    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
 }

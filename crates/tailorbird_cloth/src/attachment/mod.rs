@@ -64,9 +64,10 @@ mod prepare;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::pose::Pose;
 
 pub use held::{AttachedParticles, HeldPoint};
-pub use prepare::{AttachmentState, break_attachments, prepare_attachments};
+pub use prepare::{break_attachments, prepare_attachments};
 
 use crate::{
     error::{ClothErrorKind, ClothStatus},
@@ -266,4 +267,37 @@ impl ClothAttachment {
         let least = self.break_force.map_or(0.0, |force| Self::GIVE / force);
         self.compliance.max(least)
     }
+}
+
+/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct AttachmentState {
+    /// The last values that were valid.
+    valid: Option<ClothAttachment>,
+    /// Particles in storage order, and their points in the target's own space \[m\].
+    #[reflect(ignore)]
+    points: Vec<(u32, Vec3)>,
+    /// Of each particle [m/N]; none for a rigid attachment.
+    compliances: Option<Vec<f32>>,
+    target: Option<Entity>,
+    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
+    #[reflect(ignore)]
+    pose: Option<Pose>,
+    /// Where the target was seen last.
+    #[reflect(ignore)]
+    seen: Option<Pose>,
+    /// Of the target in the last step, as far as it was felt [m/s].
+    velocity: Vec3,
+    /// The scale of the cloth that the points were found for.
+    scale: Vec3,
+    /// How many particles that had.
+    particles: usize,
+    /// Of the topology.
+    revision: u64,
+    /// Whether the particles are still to be found.
+    stale: bool,
+    /// What is wrong with the selections and points.
+    #[reflect(ignore)]
+    wrong: Vec<ClothErrorKind>,
 }

@@ -2,13 +2,13 @@
 
 use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
 
 use super::{
     AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
-    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, pose::pose_of,
+    AttachmentOffset, AttachmentState, BreakReason, ClothAttachment, ClothAttachments,
+    pose::pose_of,
 };
 use crate::{
     cloth::Cloth,
@@ -22,40 +22,7 @@ use crate::{
     topology::ClothTopology,
 };
 
-/// Particles and target of an attachment, found when it or the cloth changes. Written by [`prepare_attachments`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct AttachmentState {
-    /// The last values that were valid.
-    valid: Option<ClothAttachment>,
-    /// Particles in storage order, and their points in the target's own space \[m\].
-    #[reflect(ignore)]
-    points: Vec<(u32, Vec3)>,
-    /// Compliance of each particle [m/N]; `None` for a rigid attachment.
-    compliances: Option<Vec<f32>>,
-    target: Option<Entity>,
-    /// Pose of the target at the end of the step before; of a sleeping cloth, when it fell asleep.
-    #[reflect(ignore)]
-    pose: Option<Pose>,
-    /// Pose of the target when it was last seen.
-    #[reflect(ignore)]
-    seen: Option<Pose>,
-    /// Velocity of the target in the last step, as far as it was felt [m/s].
-    velocity: Vec3,
-    /// The scale of the cloth that the points were found for.
-    scale: Vec3,
-    /// Number of particles of that topology.
-    particles: usize,
-    /// Revision of the topology.
-    revision: u64,
-    /// True if the particles are still to be found.
-    stale: bool,
-    /// Errors in the selections and points.
-    #[reflect(ignore)]
-    wrong: Vec<ClothErrorKind>,
-}
-
-/// Reads the targets of attachments, and their poses at the end of this step.
+/// Reads what holds the attachments, and where it is at the end of this step.
 ///
 /// An error of an attachment is reported for its entity, and its last valid state stays in force: the particles stay held where the target
 /// was.
@@ -112,7 +79,10 @@ pub fn prepare_attachments(
                 continue;
             };
             let mut errors = data.errors();
-            if (data.is_changed() || state.valid.is_none()) && errors.is_empty() {
+            if (data.is_changed() || state.valid.is_none())
+                && errors.is_empty()
+                && state.valid.as_ref() != Some(&*data)
+            {
                 state.valid = Some(ClothAttachment::clone(&data));
                 state.stale = true;
             }

@@ -48,7 +48,7 @@ enum ShapeDescription {
     },
     HalfSpace,
     Cuboid {
-        half_size: Vec3,
+        size: Vec3,
     },
     Cylinder {
         radius: f32,

@@ -52,6 +52,7 @@
 //! A [`ClothCollider`] is moved by its `Transform` alone. Bodies of a physics engine are pushed to [`ExternalColliders`] in each step, and
 //! get back what cloth did to them from [`ClothReactions`].
 
+mod colliders;
 #[cfg(feature = "serialize")]
 mod description;
 mod external;
@@ -71,6 +72,7 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 
 pub use self::{
+    colliders::{ClothColliders, ColliderPose},
     external::{ColliderBody, ExternalCollider, ExternalColliders},
     height_field::HeightField,
     hull::ConvexHull,
@@ -78,7 +80,7 @@ pub use self::{
     mesh::TriMesh,
     reactions::{ClothReaction, ClothReactions, gather_reactions},
     shape::{ColliderShape, Compound},
-    snapshot::{ClothColliders, ColliderPose, snapshot_colliders},
+    snapshot::snapshot_colliders,
     stages::{
         collide_capsule, collide_cuboid, collide_half_space, collide_shape, collide_sphere,
         find_contacts,
@@ -149,8 +151,8 @@ impl ClothCollider {
 
     /// A box with these sides \[m\].
     pub fn cuboid(x: f32, y: f32, z: f32) -> Self {
-        let half_size = 0.5 * Vec3::new(x, y, z);
-        ColliderShape::Cuboid { half_size }.into()
+        let size = Vec3::new(x, y, z);
+        ColliderShape::Cuboid { size }.into()
     }
 
     /// A cylinder of this radius and height \[m\] along y.

@@ -38,8 +38,8 @@ pub enum ColliderShape {
     HalfSpace,
     /// A box. Scale counts along each of its axes.
     Cuboid {
-        /// Half of its sides \[m\].
-        half_size: Vec3,
+        /// Its sides \[m\].
+        size: Vec3,
     },
     /// A cylinder along y.
     Cylinder {
@@ -130,9 +130,9 @@ impl ColliderShape {
                 positive("ClothCollider top_radius", *top_radius),
                 length("ClothCollider half_length", *half_length),
             ],
-            Self::Cuboid { half_size } => half_size
+            Self::Cuboid { size } => size
                 .to_array()
-                .map(|side| positive("ClothCollider half_size", side)),
+                .map(|side| positive("ClothCollider size", side)),
             Self::Cylinder {
                 radius,
                 half_height,

@@ -1,13 +1,12 @@
-//! The colliders of a step.
+//! Reads where the colliders are in a step.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
-use bevy_reflect::prelude::*;
-use tailorbird_solver::contact::colliders::{Body, ColliderId, Colliders, MovingCollider};
+use tailorbird_solver::contact::colliders::{Body, ColliderId, MovingCollider};
 
 use super::{
-    ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,
-    check, solids::Solids,
+    ClothCollider, ClothColliders, ClothLayers, ColliderBody, ColliderPose, ColliderShape,
+    ExternalCollider, ExternalColliders, check,
 };
 use crate::{
     error::{ClothErrorKind, ClothStatus, ErrorSource},
@@ -16,39 +15,7 @@ use crate::{
     step::ClothStep,
 };
 
-/// The scale of a collider. Written by [`snapshot_colliders`] alone.
-#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct ColliderPose {
-    scale: Vec3,
-}
-
-impl ColliderPose {
-    /// A scale that differs by more than this part of it is another one: below that it is the rounding of something that
-    /// turns, which must not make a mesh or hull of another size of each step.
-    const SAME_SCALE: f32 = 1e-5;
-
-    /// The scale that is in force from now on.
-    fn settle(&mut self, scale: Vec3) -> Vec3 {
-        let difference = (scale - self.scale).abs();
-        if difference.cmpgt(Self::SAME_SCALE * scale.abs()).any() {
-            self.scale = scale;
-        }
-        self.scale
-    }
-}
-
-/// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
-#[derive(Resource, Clone, Debug, Default)]
-pub struct ClothColliders {
-    /// Colliders in the form of the solver.
-    pub(crate) list: Colliders,
-    /// The bodies that cloth pushes, in the order of entities.
-    pub(super) bodies: Vec<ColliderBody>,
-    solids: Solids,
-}
-
-/// Common properties of all parts of a collider.
+/// What all parts of a collider have in common.
 struct Whole<'a> {
     step: u64,
     entity: Entity,
@@ -64,16 +31,6 @@ struct Whole<'a> {
 }
 
 impl ClothColliders {
-    /// The number of colliders; each part of a compound counts.
-    pub fn len(&self) -> usize {
-        self.list.colliders.len()
-    }
-
-    /// Returns whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.list.colliders.is_empty()
-    }
-
     fn add(&mut self, whole: &Whole) {
         if let ColliderShape::Compound(compound) = whole.shape {
             for (k, (at, shape)) in compound.parts().iter().enumerate() {

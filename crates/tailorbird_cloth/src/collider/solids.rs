@@ -10,9 +10,9 @@ use tailorbird_solver::contact::{
 
 use super::ColliderShape;
 
-/// Hulls and meshes at the scales at which they are in use, by the addresses of their shapes.
+/// Hulls and meshes at the scales at which they are in use, by the fingerprints of their shapes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Solids(BTreeMap<(usize, [u32; 3]), Kept>);
+pub(super) struct Solids(BTreeMap<(u64, [u32; 3]), Kept>);
 
 /// A solid that is kept from step to step.
 #[derive(Clone, Debug)]
@@ -20,8 +20,6 @@ struct Kept {
     /// The step that used it last.
     used: u64,
     solid: Option<Solid>,
-    /// Held on to, so that no other shape gets its address.
-    _shape: ColliderShape,
 }
 
 impl Solids {
@@ -53,8 +51,8 @@ impl Solids {
                 radii: [bottom_radius * most, top_radius * most],
                 half_length: half_length * most,
             },
-            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
-                half_size: half_size * scale.abs(),
+            ColliderShape::Cuboid { size } => Solid::Cuboid {
+                half_size: 0.5 * size * scale.abs(),
             },
             ColliderShape::Cylinder {
                 radius,
@@ -64,17 +62,17 @@ impl Solids {
                 half_height: half_height * most,
             },
             ColliderShape::HeightField(ref field) => Solid::Terrain {
-                field: field.data(),
+                field: field.field.clone(),
                 scale,
             },
             ColliderShape::ConvexHull(ref hull) => {
-                return self.kept(step, (hull.id(), shape), scale, || {
+                return self.kept(step, hull.fingerprint(), scale, || {
                     let hull = Hull::new(hull.points(), hull.triangles(), scale)?;
                     Some(Solid::Hull(Arc::new(hull)))
                 });
             }
             ColliderShape::TriMesh(ref mesh) => {
-                return self.kept(step, (mesh.id(), shape), scale, || {
+                return self.kept(step, mesh.fingerprint(), scale, || {
                     let surface = Surface::new(mesh.positions(), mesh.triangles(), scale)?;
                     Some(Solid::Mesh(Arc::new(surface)))
                 });
@@ -87,15 +85,14 @@ impl Solids {
     fn kept(
         &mut self,
         step: u64,
-        (id, shape): (usize, &ColliderShape),
+        fingerprint: u64,
         scale: Vec3,
         make: impl FnOnce() -> Option<Solid>,
     ) -> Option<Solid> {
-        let key = (id, scale.to_array().map(f32::to_bits));
+        let key = (fingerprint, scale.to_array().map(f32::to_bits));
         let kept = self.0.entry(key).or_insert_with(|| Kept {
             used: step,
             solid: make(),
-            _shape: shape.clone(),
         });
         kept.used = step;
         kept.solid.clone()

@@ -49,15 +49,15 @@
 mod prepare;
 mod samples;
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::limits::MotionLimits;
 
-pub use prepare::{MotionState, prepare_motion};
-pub use samples::TargetSamples;
+pub use prepare::prepare_motion;
 pub(crate) use samples::{begin_fixed_targets, end_fixed_targets, see_targets};
 
-use crate::error::ClothErrorKind;
+use crate::{error::ClothErrorKind, sampling::HopDetector};
 
 /// A value for each particle of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
@@ -162,7 +162,7 @@ impl Default for ClothMotionConstraints {
 
 impl ClothMotionConstraints {
     /// No particle gets further from its target than this \[m\].
-    pub fn within(max_distance: impl Into<PerParticle>) -> Self {
+    pub fn at_most(max_distance: impl Into<PerParticle>) -> Self {
         Self {
             max_distance: max_distance.into(),
             ..Self::default()
@@ -290,6 +290,65 @@ impl ClothMotionTargets {
         .flatten()
         .collect()
     }
+}
+
+/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct MotionState {
+    /// How far particles may get from their targets.
+    #[reflect(ignore)]
+    pub(crate) limits: MotionLimits,
+    /// Particles whose largest distance is 0.
+    #[reflect(ignore)]
+    held: Vec<u32>,
+    /// Whether the targets move in this step.
+    moving: bool,
+    disturbed: bool,
+    /// How far the target goes in this step that goes furthest \[m\].
+    furthest: f32,
+    /// Which targets they were aimed at.
+    aimed: [u64; 3],
+    hops: HopDetector,
+    /// Whether a step was left out.
+    idle: bool,
+    /// Of the topology.
+    revision: u64,
+}
+
+/// As many as are needed where frames are about equally long.
+const KEPT: usize = 4;
+
+/// Where the targets were in the last frames. Comes with [`ClothMotionTargets`].
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct TargetSamples {
+    /// The last one first; one for each frame in which they changed.
+    #[reflect(ignore)]
+    seen: [SeenTargets; KEPT],
+    known: usize,
+    versions: u64,
+    #[reflect(ignore)]
+    changed: Option<Tick>,
+    /// When this step of the fixed loop began.
+    #[reflect(ignore)]
+    began: Option<Tick>,
+    /// For how many steps more they count as moved by the fixed loop.
+    fixed: u8,
+    hops: HopDetector,
+    frame: u64,
+    /// Whether they were put elsewhere since the last step.
+    jumped: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+struct SeenTargets {
+    /// Of the frame.
+    number: u64,
+    /// Different whenever it is set.
+    version: u64,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
 }
 
 #[cfg(test)]

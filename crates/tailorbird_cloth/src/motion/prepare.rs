@@ -2,12 +2,10 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
-    limits::MotionLimits,
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -15,43 +13,20 @@ use tailorbird_solver::{
 };
 
 use super::{
-    ClothMotionConstraints, ClothMotionTargets, TargetSamples, TargetSpace, samples::TargetsAt,
+    ClothMotionConstraints, ClothMotionTargets, MotionState, PerParticle, TargetSamples,
+    TargetSpace, samples::TargetsAt,
 };
 use crate::{
     cloth::Cloth,
     error::{ClothStatus, ErrorSource},
     frame::ClothFrame,
     particles::ClothParticles,
-    sampling::{FrameClock, HopDetector},
+    sampling::FrameClock,
     settings::ClothSettings,
     sleep::ClothRest,
     step::ClothStep,
     topology::ClothTopology,
 };
-
-/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct MotionState {
-    /// Bounds of the distance of particles from their targets.
-    #[reflect(ignore)]
-    pub(crate) limits: MotionLimits,
-    /// Particles whose largest distance is 0.
-    #[reflect(ignore)]
-    held: Vec<u32>,
-    /// True if the targets move in this step.
-    moving: bool,
-    disturbed: bool,
-    /// Largest displacement of a target in this step \[m\].
-    furthest: f32,
-    /// Identity of the targets that they were aimed at.
-    aimed: [u64; 3],
-    hops: HopDetector,
-    /// True if a step was left out.
-    idle: bool,
-    /// Revision of the topology.
-    revision: u64,
-}
 
 /// A cloth that sleeps wakes where a target is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
@@ -111,13 +86,13 @@ pub fn prepare_motion(
         if rebuilt || constraints.is_changed() {
             let errors = constraints.errors(topology.particles());
             if errors.is_empty() {
-                motion.read(&constraints, topology);
+                motion.disturbed |= motion.read(&constraints, topology);
             } else if rebuilt {
                 // Those of another shape mean nothing to this one.
                 motion.limits.max_distance.clear();
                 motion.held.clear();
             }
-            motion.disturbed = true;
+            motion.disturbed |= rebuilt;
             let source = ErrorSource::Motion;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
@@ -211,10 +186,16 @@ impl MotionState {
         self.limits.targets[1].get(i)
     }
 
-    /// Reads valid constraints.
-    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) {
+    /// Reads valid constraints. Returns whether they are others than before.
+    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
+        let before = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ]
+        .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
-        let stored = |values: &super::PerParticle, none: f32| -> Numbers {
+        let stored = |values: &PerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };
@@ -234,6 +215,15 @@ impl MotionState {
             .filter(|(_, most)| **most == 0.0)
             .map(|(i, _)| i as u32)
             .collect();
+        let now = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ];
+        before
+            .iter()
+            .zip(now)
+            .any(|(before, now)| **before != **now)
     }
 
     /// Puts the targets to where the particles are at rest.
@@ -246,12 +236,12 @@ impl MotionState {
 
     fn compute_normals(&mut self, topology: &Topology, level: Level) {
         let (targets, normals) = (&self.limits.targets[1], &mut self.limits.normals[1]);
-        match (&topology.lattice, topology.grid) {
-            (Some(lattice), Some(_)) => {
+        match topology.grid_lattice() {
+            Some(lattice) => {
                 let rows = 0..lattice.rows as usize;
                 normals::smooth_lattice(level, lattice, targets, SharedPoints::new(normals), rows);
             }
-            _ => normals::smooth(&topology.triangles, targets, normals),
+            None => normals::smooth(&topology.triangles, targets, normals),
         }
     }
 

@@ -2,54 +2,18 @@
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use tailorbird_solver::{
     held::HolderKind,
     memory::heap,
     particles::{Input, Particles, State},
 };
 
-use super::{ClothMotionTargets, MotionState};
+use super::{ClothMotionTargets, KEPT, MotionState, SeenTargets, TargetSamples};
 use crate::{
     particles::ClothParticles,
-    sampling::{FrameClock, FrameKind, HopDetector, LAPSE},
+    sampling::{FrameClock, FrameKind, LAPSE},
     settings::ClothSettings,
 };
-
-/// Number of kept frames: enough if frames are about equally long.
-const KEPT: usize = 4;
-
-/// Targets of the last frames. Comes with [`ClothMotionTargets`].
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct TargetSamples {
-    /// The last one first; one for each frame in which they changed.
-    #[reflect(ignore)]
-    seen: [SeenTargets; KEPT],
-    known: usize,
-    versions: u64,
-    #[reflect(ignore)]
-    changed: Option<Tick>,
-    /// Change tick at the start of this step of the fixed loop.
-    #[reflect(ignore)]
-    began: Option<Tick>,
-    /// Number of steps for which they still count as moved by the fixed loop.
-    fixed: u8,
-    hops: HopDetector,
-    frame: u64,
-    /// True if they were put elsewhere since the last step.
-    jumped: bool,
-}
-
-#[derive(Clone, Debug, Default)]
-struct SeenTargets {
-    /// Number of the frame.
-    number: u64,
-    /// Different whenever it is set.
-    version: u64,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
-}
 
 /// Targets at a moment: a part of the way between two frames.
 #[derive(Clone, Copy, Debug)]

@@ -2,36 +2,17 @@
 //!
 #![doc = include_str!("README.md")]
 
+mod rest;
 mod unseen;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
+use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-pub use unseen::{ClothSeen, carry_unseen, rest_unseen};
+pub use rest::{rest_cloths, settle_cloths, wake_cloths};
+pub use unseen::{carry_unseen, rest_unseen};
 
-use crate::{
-    attachment::AttachedParticles,
-    bounds::ClothBounds,
-    cloth::Cloth,
-    collider::{ClothColliders, ClothLayers},
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    forces::ClothForces,
-    frame::ClothFrame,
-    grab::ClothGrab,
-    material::ClothMaterial,
-    motion::MotionState,
-    normals::ClothShading,
-    pins::ClothPins,
-    solver::ClothSolver,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
-    step::ClothStep,
-    topology::ClothTopology,
-    wind::BlowingWind,
-};
-use unseen::Unseen;
+use crate::error::ClothErrorKind;
 
 /// Conditions for a cloth to fall asleep: it has been at rest for some time. A cloth is at rest if the mean positions of blocks of 16
 /// particles side by side differ from their averages over the last quarter of a second by no more than [`speed`](Self::speed) times that
@@ -107,8 +88,46 @@ impl ClothSleep {
     }
 }
 
-/// State of rest and sleep of a cloth. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and [`rest_cloths`] alone, and by
-/// [`ClothRest::wake`].
+/// Whether somebody sees the cloth: its picture, or its shadow.
+///
+/// Whoever draws cloth says so, here: `tailorbird` does where Bevy draws it; without that, all cloths are seen. It matters where
+/// [`ClothSleep::unseen`] is set.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothSeen(pub bool);
+
+impl Default for ClothSeen {
+    fn default() -> Self {
+        Self(true)
+    }
+}
+
+/// Whether a cloth sleeps because nobody sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+enum Unseen {
+    /// It is seen, or sleeps for other reasons alone.
+    #[default]
+    No,
+    /// After this step it was seen no more.
+    Since(u64),
+    /// The same, and it is to take one step all the same.
+    Touched(u64),
+    /// It is seen again in this step, or takes one.
+    Back,
+}
+
+impl Unseen {
+    /// What becomes of it where something happened to the cloth.
+    fn touched(self) -> Self {
+        match self {
+            Self::Since(step) => Self::Touched(step),
+            same => same,
+        }
+    }
+}
+
+/// Whether a cloth is at rest or asleep. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and
+/// [`rest_cloths`] alone, and by [`ClothRest::wake`].
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothRest {
@@ -119,6 +138,8 @@ pub struct ClothRest {
     /// Surroundings in which it settles or sleeps.
     #[reflect(ignore)]
     around: Option<Surroundings>,
+    /// The fingerprint of its settings.
+    settings: u64,
 }
 
 /// Influences on a cloth from outside.
@@ -161,6 +182,7 @@ impl ClothRest {
     pub fn wake(&mut self) {
         *self = Self {
             unseen: self.unseen.touched(),
+            settings: self.settings,
             ..Self::default()
         };
     }
@@ -168,195 +190,8 @@ impl ClothRest {
     fn awake(&self) -> Self {
         Self {
             unseen: self.unseen,
+            settings: self.settings,
             ..Self::default()
         }
     }
-}
-
-/// After this time at rest a cloth begins to settle \[s\].
-const CALM: f32 = 0.5;
-
-/// After this time at rest it has settled \[s\].
-const SETTLED: f32 = 1.0;
-
-/// The part of its motion in a step that a settled cloth keeps: the rest is friction within the fabric.
-const KEPT: f32 = 0.02;
-
-/// A cloth wakes that is put elsewhere and turned by more \[rad\].
-const TURN: f32 = 1e-3;
-
-/// Room around a cloth in which a collider wakes it \[m\].
-const ROOM: f32 = 0.02;
-
-fn around(
-    step: &ClothStep,
-    wind: &BlowingWind,
-    colliders: &ClothColliders,
-    (frame, bounds): (&ClothFrame, &ClothBounds),
-    layers: Option<&ClothLayers>,
-    material: &ClothMaterial,
-) -> Surroundings {
-    let mut hasher = DefaultHasher::new();
-    let room = ROOM + material.margin().max(0.0);
-    for collider in colliders.list.near(
-        frame,
-        bounds.bounds(),
-        layers.copied().unwrap_or_default().layers(),
-        room,
-    ) {
-        collider.hash(&mut hasher);
-    }
-    Surroundings {
-        gravity: step.gravity(),
-        substeps: step.fixed_substeps,
-        iterations: step.iterations(),
-        air: wind.kind(frame, bounds),
-        colliders: hasher.finish(),
-    }
-}
-
-/// Wakes the cloths to which something happened since they fell asleep.
-pub fn wake_cloths(
-    step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<
-        (
-            Entity,
-            &mut ClothRest,
-            (
-                Ref<ClothSleep>,
-                Ref<ClothPins>,
-                Ref<ClothMaterial>,
-                Ref<ClothSolver>,
-                Ref<ClothTopology>,
-                Ref<ClothShading>,
-            ),
-            (
-                &ClothGrab,
-                &ClothForces,
-                &AttachedParticles,
-                Option<&MotionState>,
-            ),
-            (&ClothFrame, &ClothBounds, Option<&ClothLayers>),
-            &mut ClothStatus,
-        ),
-        With<Cloth>,
-    >,
-    commands: ParallelCommands,
-) {
-    for (entity, mut rest, settings, acting, (frame, bounds, layers), mut status) in &mut cloths {
-        let (grab, forces, attached, motion) = acting;
-        let (sleep, pins, material, solver, topology, shading) = settings;
-        if sleep.is_changed() {
-            let errors = sleep.errors();
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Sleep, errors);
-        }
-        if rest.is_unseen() {
-            continue;
-        }
-        let changed = sleep.is_changed()
-            || pins.is_changed()
-            || material.is_changed()
-            || solver.is_changed()
-            || topology.is_changed()
-            || shading.is_changed();
-        // What hangs straight does not, turned; what is put elsewhere as it is sleeps on.
-        let turned = |turn: Quat| turn.angle_between(Quat::IDENTITY) > TURN;
-        let pulled = grab.particle().is_some()
-            || !forces.is_empty()
-            || frame.is_moving()
-            || frame.jump_turn().is_some_and(turned)
-            || attached.is_disturbed()
-            || motion.is_some_and(MotionState::is_disturbed);
-        let other = |known: Surroundings| {
-            known != around(&step, &wind, &colliders, (frame, bounds), layers, &material)
-        };
-        let disturbed = changed || pulled || rest.around.is_some_and(other);
-        if disturbed {
-            let awake = rest.awake();
-            rest.set_if_neq(awake);
-        }
-    }
-}
-
-/// Measures how long the cloths have been at rest, and lets them settle.
-pub fn settle_cloths(
-    step: Res<ClothStep>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.settle(&step, &colliders);
-    });
-}
-
-/// Lets the cloths fall asleep that have been at rest for long enough.
-pub fn rest_cloths(
-    step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.rest(&step, &wind, &colliders);
-    });
-}
-
-impl ClothStagesItem<'_, '_> {
-    /// Runs [`settle_cloths`] for one cloth.
-    pub(crate) fn settle(&mut self, step: &ClothStep, colliders: &ClothColliders) {
-        if self.particles.is_empty() || !self.sleep.errors().is_empty() {
-            return;
-        }
-        let seconds = step.seconds();
-        let carries = self
-            .particles
-            .0
-            .scratch
-            .cache
-            .bodies
-            .pushed(&colliders.list);
-        let still = self.particles.0.is_at_rest(self.sleep.speed, seconds);
-        let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
-        // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
-        if carries || led || !(still || self.rest.around.is_some()) {
-            let awake = self.rest.awake();
-            self.rest.set_if_neq(awake);
-            return;
-        }
-        self.rest.seconds += seconds;
-        self.particles.0.slow_down(part_kept(self.rest.seconds));
-    }
-
-    /// Runs [`rest_cloths`] for one cloth.
-    pub(crate) fn rest(
-        &mut self,
-        step: &ClothStep,
-        wind: &BlowingWind,
-        colliders: &ClothColliders,
-    ) {
-        if self.rest.seconds < CALM {
-            return;
-        }
-        let place = (&*self.frame, &*self.bounds);
-        self.rest.around = Some(around(
-            step,
-            wind,
-            colliders,
-            place,
-            self.layers,
-            self.material,
-        ));
-        if self.sleep.enabled && self.rest.seconds >= self.sleep.seconds {
-            self.particles.0.stop();
-            self.rest.asleep = Some(step.steps());
-        }
-    }
-}
-
-/// The part of its motion in a step that a cloth keeps which has been at rest for so long \[s\].
-fn part_kept(seconds: f32) -> f32 {
-    let x = (seconds - CALM) / (SETTLED - CALM);
-    1.0 - x.clamp(0.0, 1.0) * (1.0 - KEPT)
 }

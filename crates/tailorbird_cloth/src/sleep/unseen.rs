@@ -2,52 +2,13 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use bevy_reflect::prelude::*;
 use tailorbird_solver::particles::{Particles, State};
 
-use super::{ClothRest, ClothSleep};
+use super::{ClothRest, ClothSeen, ClothSleep, Unseen};
 use crate::{
     attachment::AttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
     motion::ClothMotionTargets, normals::ClothNormals, particles::ClothParticles, step::ClothStep,
 };
-
-/// True if somebody sees the cloth: its picture, or its shadow.
-///
-/// The code that draws cloth sets it: `tailorbird` does if Bevy draws it; without that, all cloths are seen. It has an effect if
-/// [`ClothSleep::unseen`] is set.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-#[reflect(Component, Default)]
-pub struct ClothSeen(pub bool);
-
-impl Default for ClothSeen {
-    fn default() -> Self {
-        Self(true)
-    }
-}
-
-/// Sleep of a cloth that nobody sees.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-pub(super) enum Unseen {
-    /// The cloth is seen, or sleeps for other reasons alone.
-    #[default]
-    No,
-    /// After this step it was seen no more.
-    Since(u64),
-    /// It sleeps unseen, but is to take one step.
-    Touched(u64),
-    /// The cloth is seen again in this step, or takes one.
-    Back,
-}
-
-impl Unseen {
-    /// State after something happened to the cloth.
-    pub fn touched(self) -> Self {
-        match self {
-            Self::Since(step) => Self::Touched(step),
-            same => same,
-        }
-    }
-}
 
 /// Lets cloths sleep that nobody sees, and wakes those that somebody sees again.
 pub fn rest_unseen(
@@ -77,6 +38,7 @@ pub fn rest_unseen(
         if unseen != rest.unseen {
             *rest = ClothRest {
                 unseen,
+                settings: rest.settings,
                 ..ClothRest::default()
             };
             frame.bypass_change_detection().carries = rest.is_unseen();

@@ -52,20 +52,13 @@
 //! them. The method and its limits are explained
 //! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_solver/src/kernels/README.md).
 
+mod stages;
+
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{
-    coefficients::Method,
-    step::{CALM, INTEGRATE, SOLVE},
-    topology::Topology,
-};
+use tailorbird_solver::{coefficients::Method, topology::Topology};
 
-use crate::{
-    cloth::Cloth,
-    collider::ClothColliders,
-    stages::{ClothStages, run_stage},
-    step::ClothStep,
-};
+pub use stages::{calm_knots, solve_constraints, verlet_step};
 
 /// Method by which the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
@@ -81,6 +74,17 @@ pub enum ClothSolver {
     GaussSeidel,
 }
 
+/// The number of substeps of a cloth, in place of [`ClothSettings::substeps`](crate::settings::ClothSettings::substeps) and of as many as it
+/// needs: fewer for one far away, more for one that must not stretch. Optional; 0 counts as 1.
+///
+/// Where a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep), all cloths take as many as the one that takes
+/// most.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+pub struct ClothSubsteps(pub u32);
+
 impl ClothSolver {
     /// Number of substeps that a cloth needs in a step of 1/60 s.
     ///
@@ -91,7 +95,7 @@ impl ClothSolver {
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
             Self::Chains => {
-                let needed = if let Some(lattice) = topology.lattice {
+                let needed = if let Some(lattice) = topology.lattice() {
                     let side = lattice.columns.max(lattice.rows);
                     let least = if side <= 36 { 6 } else { 8 };
                     side.div_ceil(24).max(least)
@@ -117,38 +121,11 @@ impl ClothSolver {
     /// Least number of substeps of a cloth while a hand holds it: the hand may stretch an edge by a tenth, which bounds its force in a
     /// substep, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
-        let side = match (self, topology.lattice) {
+        let side = match (self, topology.lattice()) {
             (Self::GaussSeidel, _) => 0,
             (Self::Chains, Some(lattice)) => lattice.columns.max(lattice.rows),
             (Self::Chains, None) => (topology.particles() as f32).sqrt().ceil() as u32,
         };
         side.div_ceil(5).next_multiple_of(2).min(32)
     }
-}
-
-/// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
-pub fn verlet_step(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(INTEGRATE, &step, &colliders, &mut cloths);
-}
-
-/// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
-///
-/// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
-/// relaxation, the others as XPBD.
-pub fn solve_constraints(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(SOLVE, &step, &colliders, &mut cloths);
-}
-
-/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
-pub fn calm_knots(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(CALM, &step, &colliders, &mut cloths);
 }

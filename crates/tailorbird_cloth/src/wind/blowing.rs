@@ -12,7 +12,7 @@ use tailorbird_solver::{
     },
     particles::{Input, Particles, Scratch, State},
     points::Points,
-    wind::{WAVES, Wave, WindShape, sine, strength},
+    wind::{WAVES, Wave, WindRegion, sine, strength},
     workers::Workers,
 };
 use tracing::error;
@@ -42,7 +42,7 @@ pub struct BlowingWind {
 struct Source {
     /// The zone's.
     entity: Option<Entity>,
-    shape: WindShape,
+    shape: WindRegion,
     falloff: f32,
     /// Pose in the world.
     at: Isometry3d,
@@ -59,7 +59,7 @@ impl Source {
     fn new(entity: Option<Entity>) -> Self {
         Self {
             entity,
-            shape: WindShape::Everywhere,
+            shape: WindRegion::Everywhere,
             falloff: 0.0,
             at: Isometry3d::IDENTITY,
             velocity: Vec3::ZERO,
@@ -103,9 +103,9 @@ impl Source {
         numbers(hasher, &Vec3::from(self.at.translation).to_array());
         numbers(hasher, &self.at.rotation.to_array());
         let size = match self.shape {
-            WindShape::Everywhere => Vec3::ZERO,
-            WindShape::Cuboid { half_size } => half_size,
-            WindShape::Sphere { radius } => Vec3::splat(-radius),
+            WindRegion::Everywhere => Vec3::ZERO,
+            WindRegion::Cuboid { half_size } => half_size,
+            WindRegion::Sphere { radius } => Vec3::splat(-radius),
         };
         numbers(hasher, &size.to_array());
         let Turbulence { speed, scale, seed } = self.turbulence;
@@ -175,7 +175,7 @@ pub fn prepare_wind(
         sources.swap(blows, index);
         let source = &mut sources[blows];
         let gusty = zone.gusts.vary(zone.velocity, step.elapsed());
-        source.shape = zone.shape.scaled(scale);
+        source.shape = zone.shape.region(scale);
         source.falloff = zone.falloff;
         source.at = at;
         source.velocity = at.rotation * gusty;
@@ -326,7 +326,7 @@ impl BlowingWind {
             seconds: step.seconds(),
         };
         // The cells of a mesh are cut in its own way.
-        if let (Some(lattice), Some(_)) = (&topology.lattice, topology.grid) {
+        if let Some(lattice) = topology.grid_lattice() {
             let sheet = AirSheet {
                 lattice,
                 position,
@@ -383,7 +383,7 @@ impl Source {
             velocity: frame.rotation.inverse() * self.velocity,
             waves: self.turbulence.is_some().then_some(waves),
             shape: if whole {
-                WindShape::Everywhere
+                WindRegion::Everywhere
             } else {
                 self.shape
             },

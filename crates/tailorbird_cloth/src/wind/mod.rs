@@ -20,8 +20,8 @@ mod blowing;
 mod zone;
 
 pub use blowing::{BlowingWind, apply_wind, prepare_wind};
-pub use tailorbird_solver::wind::{Turbulence, WindShape};
-pub use zone::WindZone;
+pub use tailorbird_solver::wind::Turbulence;
+pub use zone::{WindShape, WindZone};
 
 /// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]

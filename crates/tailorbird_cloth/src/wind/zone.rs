@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
-use tailorbird_solver::wind::WindShape;
+use tailorbird_solver::wind::WindRegion;
 
 use super::{Gusts, Turbulence, turbulence_errors};
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
 ///         WindZone {
 ///             falloff: 0.5,
 ///             turbulence: Turbulence { speed: 1.0, scale: 0.5, ..Turbulence::default() },
-///             ..WindZone::cuboid(Vec3::new(1.0, 1.0, 3.0), Vec3::Z * 6.0)
+///             ..WindZone::cuboid(Vec3::new(2.0, 2.0, 6.0), Vec3::Z * 6.0)
 ///         },
 ///         Transform::from_xyz(0.0, 1.0, -3.0),
 ///     ));
@@ -53,9 +53,10 @@ pub struct WindZone {
 }
 
 impl Default for WindZone {
+    /// No wind in a sphere of 1 m.
     fn default() -> Self {
         Self {
-            shape: WindShape::Everywhere,
+            shape: WindShape::default(),
             velocity: Vec3::ZERO,
             falloff: 0.0,
             gusts: Gusts::default(),
@@ -65,19 +66,12 @@ impl Default for WindZone {
 }
 
 impl WindZone {
-    /// A steady wind in the whole world [m/s].
-    pub fn everywhere(velocity: Vec3) -> Self {
+    /// A steady wind in a box with these sides \[m\] [m/s]. Wind in the whole world is [`Wind`](super::Wind).
+    pub fn cuboid(size: Vec3, velocity: Vec3) -> Self {
         Self {
+            shape: WindShape::Cuboid { size },
             velocity,
             ..Self::default()
-        }
-    }
-
-    /// A steady wind in a box with these half sides \[m\] [m/s].
-    pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
-        Self {
-            shape: WindShape::Cuboid { half_size },
-            ..Self::everywhere(velocity)
         }
     }
 
@@ -85,7 +79,8 @@ impl WindZone {
     pub fn sphere(radius: f32, velocity: Vec3) -> Self {
         Self {
             shape: WindShape::Sphere { radius },
-            ..Self::everywhere(velocity)
+            velocity,
+            ..Self::default()
         }
     }
 
@@ -96,12 +91,11 @@ impl WindZone {
         let size =
             |field, value| ClothErrorKind::number(field, value, positive, "above 0 and finite [m]");
         let shape = match self.shape {
-            WindShape::Everywhere => None,
-            WindShape::Cuboid { half_size } => {
-                let least = half_size.min_element();
-                let most = half_size.max_element();
+            WindShape::Cuboid { size: sides } => {
+                let least = sides.min_element();
+                let most = sides.max_element();
                 size(
-                    "WindZone.shape.half_size",
+                    "WindZone.shape.size",
                     if most.is_finite() { least } else { most },
                 )
             }
@@ -129,9 +123,50 @@ impl WindZone {
     }
 }
 
-/// Overlap of a wind of this shape with a ball: none (`None`), the same wind everywhere, or a varying one.
+/// Where a zone of wind blows, in the entity's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
+pub enum WindShape {
+    /// In a box around the entity.
+    Cuboid {
+        /// Its sides \[m\].
+        size: Vec3,
+    },
+    /// In a sphere around the entity.
+    Sphere {
+        /// \[m\]
+        radius: f32,
+    },
+}
+
+impl Default for WindShape {
+    /// A sphere of 1 m.
+    fn default() -> Self {
+        Self::Sphere { radius: 1.0 }
+    }
+}
+
+impl WindShape {
+    /// The same for the solver, as large as an entity of this scale makes it.
+    pub(super) fn region(self, scale: Vec3) -> WindRegion {
+        let scale = scale.abs();
+        match self {
+            Self::Cuboid { size } => WindRegion::Cuboid {
+                half_size: 0.5 * size * scale,
+            },
+            Self::Sphere { radius } => WindRegion::Sphere {
+                radius: radius * scale.max_element(),
+            },
+        }
+    }
+}
+
+/// How a wind of this shape meets a ball: not at all (`None`), in the same way everywhere, or not.
 pub(super) fn is_whole_in(
-    shape: WindShape,
+    shape: WindRegion,
     falloff: f32,
     at: Isometry3d,
     (center, radius): (Vec3, f32),

@@ -16,7 +16,7 @@ fn wrong_measures_are_told() {
             "bottom_radius",
         ),
         (ClothCollider::tapered_capsule(1.0, -2.0, 1.0), "top_radius"),
-        (ClothCollider::cuboid(1.0, f32::INFINITY, 1.0), "half_size"),
+        (ClothCollider::cuboid(1.0, f32::INFINITY, 1.0), "size"),
         (ClothCollider::cylinder(1.0, 0.0), "half_height"),
         (ClothCollider::sphere(1.0).with_margin(-0.1), "margin"),
     ] {

@@ -167,7 +167,7 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
     ];
     for (name, change) in wrong {
         let mut world = World::new();
-        let cloth = world.spawn((square(5), ClothMotionConstraints::within(0.2)));
+        let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.2)));
         world.steps(2);
         world.edit(cloth, change);
         world.steps(60);
@@ -178,7 +178,7 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
         );
         assert!(world.at(cloth, 12).length() < 0.2 + 1e-5);
         world.edit(cloth, |c: &mut ClothMotionConstraints| {
-            *c = ClothMotionConstraints::within(0.3);
+            *c = ClothMotionConstraints::at_most(0.3);
         });
         world.steps(60);
         assert!(world.errors(cloth).is_empty());
@@ -192,7 +192,7 @@ fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
     for (name, broken) in [("positions[7]", Vec3::NAN), ("normals[7]", Vec3::INFINITY)] {
         let mut world = World::new();
         let targets = ClothMotionTargets::default();
-        let cloth = world.spawn((square(5), ClothMotionConstraints::within(0.0), targets));
+        let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.0), targets));
         let mut positions = rest(&world, cloth);
         let mut normals = vec![Vec3::Z; 25];
         world.steps(2);
@@ -257,7 +257,7 @@ proptest! {
             held = held.with_points(vec![Vec3::new(x, y, z); points]);
         }
         world.attach(cloth, hand, held);
-        let limits = ClothMotionConstraints::within(most).with_backstop(distance, radius);
+        let limits = ClothMotionConstraints::at_most(most).with_backstop(distance, radius);
         world.app.world_mut().entity_mut(cloth).insert(limits);
         for at in [Vec3::ZERO, Vec3::from(place), Vec3::ONE] {
             world.move_to(hand, Transform::from_translation(at));

@@ -27,7 +27,7 @@ fn everything(world: &mut World, size: UVec2) -> Entity {
         rigid(),
         dance(0.0),
         Path(Box::new(|t| dance(0.5 * t))),
-        ClothMotionConstraints::within(limits.collect::<Vec<_>>()).with_backstop(0.05, 0.7),
+        ClothMotionConstraints::at_most(limits.collect::<Vec<_>>()).with_backstop(0.05, 0.7),
         ClothPinForces::default(),
     ));
     world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));

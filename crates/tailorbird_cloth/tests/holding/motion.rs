@@ -16,7 +16,7 @@ fn no_particle_gets_further_than_it_may() {
     let mut world = World::new();
     let weights = (0..81).map(|i| (i / 9) as f32 / 8.0);
     let limits = PerParticle::weighted(weights.clone(), 0.3);
-    let cloth = world.spawn((square(9), ClothMotionConstraints::within(limits)));
+    let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(limits)));
     let rest = rest(cloth, &world);
     for _ in 0..200 {
         world.steps(1);
@@ -45,7 +45,7 @@ fn held_rows_are_as_good_as_pins() {
                 .app
                 .world_mut()
                 .entity_mut(cloth)
-                .insert(ClothMotionConstraints::within(limits));
+                .insert(ClothMotionConstraints::at_most(limits));
         } else {
             world.edit(cloth, |pins: &mut ClothPins| {
                 *pins = ClothPins::edges([GridEdge::Top]);
@@ -125,7 +125,7 @@ fn targets_in_either_space_are_followed_without_lag() {
             square(9),
             frame(0.0),
             Path(Box::new(frame)),
-            ClothMotionConstraints::within(limits).with_backstop(0.02, 1.0),
+            ClothMotionConstraints::at_most(limits).with_backstop(0.02, 1.0),
             ClothMotionTargets::in_space(space),
         ));
         let rest = rest(cloth, &world);
@@ -155,7 +155,7 @@ fn a_sphere_counts_before_the_maximum_distance() {
         ClothCollider::sphere(0.3),
         Transform::from_xyz(0.0, 0.0, -0.2),
     ));
-    let cloth = world.spawn((square(17), ClothMotionConstraints::within(0.01)));
+    let cloth = world.spawn((square(17), ClothMotionConstraints::at_most(0.01)));
     world.steps(60);
     let center = Vec3::new(0.0, 0.0, -0.2);
     for p in world.positions(cloth) {
@@ -166,7 +166,7 @@ fn a_sphere_counts_before_the_maximum_distance() {
 #[test]
 fn constraints_that_are_removed_let_go() {
     let mut world = World::new();
-    let cloth = world.spawn((square(9), ClothMotionConstraints::within(0.0)));
+    let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(0.0)));
     world.steps(10);
     assert_eq!(world.at(cloth, 40), Vec3::ZERO);
     world
@@ -205,7 +205,7 @@ fn a_mesh_is_constrained_by_its_own_numbers() {
     let cloth = world.spawn((
         Cloth::mesh(positions, indices),
         rigid(),
-        ClothMotionConstraints::within(limits.clone()),
+        ClothMotionConstraints::at_most(limits.clone()),
     ));
     let rest = rest(cloth, &world);
     for _ in 0..100 {

@@ -13,7 +13,7 @@ fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (World, En
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(8), ClothMotionTargets::default()));
     if let Some(most) = constraints {
-        let constraints = ClothMotionConstraints::within(most);
+        let constraints = ClothMotionConstraints::at_most(most);
         world.app.world_mut().entity_mut(cloth).insert(constraints);
     }
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);

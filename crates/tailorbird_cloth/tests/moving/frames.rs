@@ -98,7 +98,7 @@ fn targets_that_are_set_once_a_frame() {
             filmed(fps, 60.0, |game| {
                 game.spawn((
                     cape(),
-                    ClothMotionConstraints::within(PerParticle::Each(
+                    ClothMotionConstraints::at_most(PerParticle::Each(
                         (0..SIZE.element_product())
                             .map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY })
                             .collect(),

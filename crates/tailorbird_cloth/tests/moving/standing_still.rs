@@ -110,7 +110,7 @@ fn targets_that_moved_meanwhile_are_not_felt() {
                 (0..SIZE.element_product()).map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY });
             let cloth = game.spawn((
                 cape(),
-                ClothMotionConstraints::within(PerParticle::Each(held.collect())),
+                ClothMotionConstraints::at_most(PerParticle::Each(held.collect())),
                 ClothMotionTargets::in_space(space),
             ));
             let rest = game.get::<Cloth>(cloth).rest_positions();

@@ -24,7 +24,7 @@ fn tables() -> Vec<(&'static str, ClothCollider, Quat)> {
     let bumps = (0..121).map(|k: u8| 0.1 + 0.02 * (2.0 * f32::from(k)).sin());
     let bumps = ClothCollider::height_field(bumps.collect(), 11, Vec2::splat(1.6)).expect("bumps");
     let side = ColliderShape::Cuboid {
-        half_size: Vec3::new(0.29, 0.6, 0.1),
+        size: Vec3::new(0.58, 1.2, 0.2),
     };
     let sides = [-0.3, 0.3].map(|x| (Isometry3d::from_translation(Vec3::X * x), side.clone()));
     let compound = ClothCollider::compound(sides).expect("two");

@@ -153,7 +153,7 @@ fn the_cloth_vanishing_after_an_extreme_move() {
                 entity: plate,
                 part: 0,
                 shape: ColliderShape::Cuboid {
-                    half_size: Vec3::new(0.4, 0.3, 0.01),
+                    size: Vec3::new(0.8, 0.6, 0.02),
                 },
                 friction: 0.5,
                 margin: 0.0,

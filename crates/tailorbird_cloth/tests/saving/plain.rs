@@ -14,6 +14,7 @@ fn shapes_come_back() {
         shape: ClothShape::Mesh {
             positions: corners.to_vec(),
             indices: vec![0, 1, 2],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::new(0.25, 1.0)],
             weld_distance: 0.002,
         },
     });
@@ -167,9 +168,8 @@ fn wind_comes_back() {
         });
     }
     for shape in [
-        WindShape::Everywhere,
         WindShape::Cuboid {
-            half_size: Vec3::new(1.0, 2.0, 3.0),
+            size: Vec3::new(1.0, 2.0, 3.0),
         },
         WindShape::Sphere { radius: 4.0 },
     ] {
@@ -201,7 +201,7 @@ fn attachments_come_back() {
 
 #[test]
 fn motion_constraints_and_targets_come_back() {
-    comes_back(&ClothMotionConstraints::within(vec![0.0, 0.5, 1.0]).with_backstop(0.01, 0.3));
+    comes_back(&ClothMotionConstraints::at_most(vec![0.0, 0.5, 1.0]).with_backstop(0.01, 0.3));
     for space in [TargetSpace::Frame, TargetSpace::World] {
         let mut targets = ClothMotionTargets::in_space(space);
         targets.set([Vec3::X, Vec3::Y], [Vec3::Z, Vec3::NEG_Z]);

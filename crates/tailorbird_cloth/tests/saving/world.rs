@@ -108,7 +108,7 @@ fn a_world_comes_back(all: bool) {
             ClothInertia::none(),
             ClothSleep::never(),
             ClothLayers::new(1, 2),
-            ClothMotionConstraints::within(0.5),
+            ClothMotionConstraints::at_most(0.5),
             ClothMotionTargets::in_space(TargetSpace::World),
             Transform::from_xyz(0.0, 2.0, 0.0),
         ))

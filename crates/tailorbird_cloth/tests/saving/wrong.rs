@@ -40,8 +40,8 @@ fn measures_that_are_not_above_zero() {
         "ClothCollider half_length is NaN",
     );
     says(
-        &wrong::<ColliderShape>("Cuboid(half_size: (1, -1, 1))"),
-        "ClothCollider half_size is -1",
+        &wrong::<ColliderShape>("Cuboid(size: (1, -1, 1))"),
+        "ClothCollider size is -1",
     );
     says(
         &wrong::<ClothCollider>("(shape: HalfSpace, friction: -0.5)"),

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt, sync::Arc};
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3, Vec4};
 
 use super::surface::Surface;
-use crate::kernels::planes::PlaneList;
+use crate::{fingerprint, kernels::planes::PlaneList};
 
 /// A shape at the scale of its entity.
 #[derive(Clone)]
@@ -48,8 +48,10 @@ impl Kind {
 }
 
 /// Heights above the x-z plane in a grid around the origin, columns along +x, rows along +z.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Field {
+    /// Equal for equal fields.
+    pub fingerprint: u64,
     /// Row by row \[m\].
     pub heights: Arc<[f32]>,
     /// Columns and rows.
@@ -60,9 +62,28 @@ pub struct Field {
     pub range: (f32, f32),
 }
 
+impl Field {
+    /// The field of these heights \[m\].
+    pub fn new(heights: Arc<[f32]>, resolution: UVec2, size: Vec2) -> Self {
+        let measures = size.to_array().map(f32::to_bits);
+        let numbers = resolution.to_array().into_iter().chain(measures);
+        Self {
+            fingerprint: fingerprint::of(numbers.chain(heights.iter().map(|h| h.to_bits()))),
+            range: heights.iter().fold((f32::MAX, f32::MIN), |(low, high), h| {
+                (low.min(*h), high.max(*h))
+            }),
+            heights,
+            resolution,
+            size,
+        }
+    }
+}
+
 /// A convex hull at the scale of its entity.
 #[derive(Debug)]
 pub struct Hull {
+    /// Equal for equal hulls at equal scales.
+    fingerprint: u64,
     pub planes: PlaneList,
     pub size: f32,
     range: (Vec3, Vec3),
@@ -114,6 +135,7 @@ impl Hull {
         let low = points.iter().copied().reduce(Vec3::min)?;
         let high = points.iter().copied().reduce(Vec3::max)?;
         (planes.len() > 3 && size > 0.0).then(|| Self {
+            fingerprint: fingerprint::of_triangles(&points, triangles),
             planes: PlaneList::new(&planes),
             size,
             range: (low, high),
@@ -186,11 +208,11 @@ impl Solid {
                 radius,
                 half_height,
             } => [5, two(*radius, *half_height), 0],
-            Self::Hull(hull) => [6, Arc::as_ptr(hull) as u64, 0],
-            Self::Mesh(surface) => [7, Arc::as_ptr(surface) as u64, 0],
+            Self::Hull(hull) => [6, hull.fingerprint, 0],
+            Self::Mesh(surface) => [7, surface.fingerprint, 0],
             Self::Terrain { field, scale } => [
                 8,
-                Arc::as_ptr(&field.heights) as *const f32 as u64,
+                field.fingerprint ^ two(scale.y, 0.0),
                 two(scale.x, scale.z),
             ],
         }

@@ -9,10 +9,12 @@ use parry3d::{
     shape::{TriMesh as SearchMesh, TriMeshFlags},
 };
 
-use crate::kernels::patches::Patches;
+use crate::{fingerprint, kernels::patches::Patches};
 
 /// A triangle mesh at the scale of its entity.
 pub struct Surface {
+    /// Equal for equal triangles at equal scales.
+    pub fingerprint: u64,
     mesh: SearchMesh,
     /// True if it has an inside.
     solid: bool,
@@ -26,7 +28,8 @@ impl Surface {
         let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale).collect();
         let mirrored = scale.x * scale.y * scale.z < 0.0;
         let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
-        let triangles = triangles.iter().copied().map(turn).collect();
+        let triangles: Vec<_> = triangles.iter().copied().map(turn).collect();
+        let fingerprint = fingerprint::of_triangles(&positions, &triangles);
         let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES
             | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
             | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
@@ -38,6 +41,7 @@ impl Surface {
         let lengths = mesh.triangles().map(|t| t.a.distance(t.b));
         let edge = lengths.sum::<f32>() / mesh.num_triangles().max(1) as f32;
         Some(Self {
+            fingerprint,
             solid,
             detail: 0.1 * edge,
             mesh,

@@ -19,7 +19,7 @@ fn mesh(seed: u64) -> Topology {
 }
 
 fn fabric(topology: &Topology) -> &Fabric {
-    topology.fabric.as_ref().expect("no grid")
+    topology.fabric().expect("no grid")
 }
 
 fn moved(topology: &Topology, to: impl Fn(Vec3) -> Vec3) -> Points {
@@ -72,7 +72,7 @@ proptest! {
     ) {
         let cloth = ClothShape::grid(Vec2::new(1.0, 2.0), UVec2::new(columns, rows));
         let topology = Topology::build(&cloth, Vec3::ONE).expect("valid");
-        let lattice = topology.lattice.expect("a grid");
+        let lattice = *topology.lattice().expect("a grid");
         let position = moved(&topology, |p| p * Vec3::new(1.0 + v, 1.0 + u, 1.0));
         let mut grant = Grant::default();
         for _ in 0..60 {

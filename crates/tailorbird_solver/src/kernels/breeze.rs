@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::lanes::{Factor, SharedPoints, V3, each_window};
 use crate::{
     points::Points,
-    wind::{WAVES, Wave, WindShape},
+    wind::{WAVES, Wave, WindRegion},
 };
 
 /// A wind in a part of the world, with its eddies, in the axes of a cloth's frame.
@@ -18,8 +18,8 @@ pub struct Breeze {
     pub velocity: Vec3,
     /// Its eddies, where it has any.
     pub waves: Option<[Wave; WAVES]>,
-    pub shape: WindShape,
-    /// Width of the border over which the wind rises \[m\].
+    pub shape: WindRegion,
+    /// \[m\]
     pub falloff: f32,
     /// From the frame's axes to those of the shape.
     pub to_own: Isometry3d,
@@ -94,13 +94,13 @@ fn sine<S: Simd>(simd: S, turns: S::f32s) -> S::f32s {
 fn strength<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> S::f32s {
     let [zero, one] = [S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0)];
     let depth = match breeze.shape {
-        WindShape::Everywhere => return one,
-        WindShape::Cuboid { half_size } => {
+        WindRegion::Everywhere => return one,
+        WindRegion::Cuboid { half_size } => {
             let (q, half) = (own(simd, breeze, p), V3::<S>::splat(simd, half_size));
             let y = half.y - q.y.abs();
             (half.x - q.x.abs()).min(y).min(half.z - q.z.abs())
         }
-        WindShape::Sphere { radius } => {
+        WindRegion::Sphere { radius } => {
             let q = own(simd, breeze, p);
             S::f32s::splat(simd, radius) - q.dot(q).sqrt()
         }
@@ -151,11 +151,11 @@ mod tests {
         let point = |i| Vec3::new(random(i, 1), random(i, 2), random(i, 3)) * 4.0 - 2.0;
         let position: Points = (0..101).map(point).collect();
         let shapes = [
-            WindShape::Everywhere,
-            WindShape::Cuboid {
+            WindRegion::Everywhere,
+            WindRegion::Cuboid {
                 half_size: Vec3::new(1.0, 0.7, 1.5),
             },
-            WindShape::Sphere { radius: 1.2 },
+            WindRegion::Sphere { radius: 1.2 },
         ];
         let turbulence = Turbulence {
             speed: 2.0,

@@ -74,12 +74,17 @@ impl Sheet<'_> {
     #[inline(always)]
     pub fn check(&self) {
         let n = self.columns * self.rows;
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        // Particles that are split off the sheet follow those of its columns and rows.
+        let points = |p: SharedPoints| {
+            [p.x.len(), p.y.len(), p.z.len()]
+                .iter()
+                .all(|len| *len >= n)
+        };
         assert!(
             points(self.position)
-                && self.inv_mass.len() == n
+                && self.inv_mass.len() >= n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.lengths.is_none_or(|lengths| lengths.are_of(n)),
             "a sheet of {} x {} particles",
             self.columns,

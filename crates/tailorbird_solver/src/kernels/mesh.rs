@@ -55,12 +55,13 @@ impl Mesh<'_> {
     #[inline(always)]
     fn check(&self) {
         let n = self.fabric.particles();
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        // Particles that are split off follow those of the mesh.
+        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         assert!(
             points(self.position)
-                && self.inv_mass.len() == n
+                && self.inv_mass.len() >= n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.rest_length.len() == self.fabric.chains().particle.len(),
             "a mesh of {n} particles"
         );
@@ -275,7 +276,7 @@ pub fn exchange(
 ) {
     let n = fabric.particles();
     assert!(
-        position.is_of(n) && previous.is_of(n) && lost.is_of(n) && inv_masses.len() == n,
+        position.has(n) && previous.has(n) && lost.has(n) && inv_masses.len() >= n,
         "a mesh of {n} particles"
     );
     with_scratch(8 * n, |scratch| {

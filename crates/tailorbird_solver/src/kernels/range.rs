@@ -138,6 +138,8 @@ mod tests {
                     values[i] = -3.0;
                     assert_eq!(range(level, &values, (0.0, 2.0)), (-3.0, 2.0));
                     assert!(is_finite(level, &values));
+                    values[i] = 3.0;
+                    assert_eq!(range(level, &values, (-2.0, 0.0)), (-2.0, 3.0));
                     for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                         values[i] = wrong;
                         assert!(!is_finite(level, &values), "{i} of {len}, {level:?}");

@@ -33,7 +33,7 @@ fn tube(around: u32, rings: u32) -> Topology {
 }
 
 fn fabric(topology: &Topology) -> &Fabric {
-    topology.fabric.as_ref().expect("no grid")
+    topology.fabric().expect("no grid")
 }
 
 /// Solves the rings alone, so many times.

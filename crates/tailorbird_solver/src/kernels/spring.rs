@@ -55,4 +55,13 @@ mod tests {
         assert!(left(1.0, f32::MIN_POSITIVE) < 1e-30);
         assert_eq!(left(f32::MAX, f32::MIN_POSITIVE), 0.0);
     }
+
+    #[test]
+    fn a_compliance_by_the_square_of_a_step_is_finite() {
+        assert_eq!(alpha_tilde(3.0, 0.5), 12.0);
+        assert_eq!(alpha_tilde(0.0, 0.5), 0.0);
+        assert_eq!(alpha_tilde(-1.0, 0.5), 0.0);
+        assert_eq!(alpha_tilde(f32::MAX, 0.5), f32::MAX);
+        assert_eq!(alpha_tilde(f32::INFINITY, 0.5), f32::MAX);
+    }
 }

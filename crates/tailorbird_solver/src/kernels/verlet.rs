@@ -4,6 +4,8 @@
 //! in free fall would lag by millimetres in seconds. So the rounding error of a displacement is kept and added to the next one (as Kahan
 //! does for sums).
 
+use std::ops::Range;
+
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
@@ -36,8 +38,8 @@ impl Verlet {
         (-self.damping * self.seconds).exp() * ratio
     }
 
-    /// Moves free particles (`inv_mass` > 0) from `previous` over `position` to the new position, which replaces `position`; the old one
-    /// becomes `previous`. Kinematic particles stay as they are.
+    /// Moves the free ones (`inv_mass` > 0) of some particles from `previous` over `position` to the new position, which replaces
+    /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
     /// `acceleration` is added to gravity [m/s²]; `None` is 0. `lost` is the rounding error of the displacement of each particle in the
     /// substep before \[m\], and is replaced by that of this one.
@@ -52,6 +54,7 @@ impl Verlet {
         lost: &mut Points,
         acceleration: Option<&Points>,
         inv_mass: &[f32],
+        particles: Range<usize>,
     ) {
         let n = inv_mass.len();
         assert!(
@@ -76,7 +79,8 @@ impl Verlet {
                 acceleration,
                 inv_mass: Reading(inv_mass),
             };
-            dispatch!(level, simd => step_axis(simd, axis, kept, fall, h2));
+            let particles = particles.clone();
+            dispatch!(level, simd => step_axis(simd, axis, kept, fall, h2, particles));
         }
     }
 }
@@ -92,13 +96,12 @@ struct Axis<'a> {
 }
 
 #[inline(always)]
-fn step_axis<S: Simd>(simd: S, axis: Axis, kept: f32, fall: f32, h2: f32) {
+fn step_axis<S: Simd>(simd: S, axis: Axis, kept: f32, fall: f32, h2: f32, particles: Range<usize>) {
     let zero = S::f32s::splat(simd, 0.0);
     let fall = S::f32s::splat(simd, fall);
-    let all = 0..axis.inv_mass.0.len();
     each_window(
         simd,
-        all.clone(),
+        particles,
         #[inline(always)]
         |window| {
             let now = axis.position.load_at(simd, window, 0);
@@ -159,6 +162,7 @@ mod tests {
             &mut lost,
             None,
             &[1.0],
+            0..1,
         );
         assert_eq!(position.get(0), Vec3::X * 1.25);
     }
@@ -184,6 +188,7 @@ mod tests {
                     &mut lost,
                     None,
                     &[1.0],
+                    0..1,
                 );
             }
             let (h, n) = (f64::from(seconds), f64::from(steps));

@@ -71,10 +71,10 @@ impl SheetMotion<'_> {
     fn check(&self) {
         self.sheet.check();
         let n = self.sheet.columns * self.sheet.rows;
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         let all = points(self.previous) && points(self.lost);
         assert!(
-            all && self.acceleration.is_none_or(|a| a.is_of(n)),
+            all && self.acceleration.is_none_or(|a| a.has(n)),
             "one of each for {n} particles"
         );
     }

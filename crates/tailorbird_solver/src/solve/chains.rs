@@ -20,7 +20,11 @@ use crate::{
     particles::{Input, Particles, Scratch, State},
     substep::Substep,
     tethers::{Anchors, Tethers},
-    topology::{Topology, lattice::Lattice},
+    topology::{
+        Topology,
+        lattice::Lattice,
+        layout::{Layout, SheetLayout},
+    },
     workers::Workers,
 };
 
@@ -92,12 +96,11 @@ impl Pass<'_> {
 
     /// Size of the cloth \[m\].
     pub fn size(&self) -> f32 {
-        match (&self.topology.lattice, &self.topology.fabric) {
-            (Some(lattice), _) => {
+        match &self.topology.layout {
+            Layout::Sheet(SheetLayout { lattice, .. }) => {
                 lattice.rows.max(lattice.columns) as f32 * lattice.spacing.max_element()
             }
-            (None, Some(fabric)) => fabric.size(),
-            (None, None) => 0.0,
+            Layout::Mesh(fabric) => fabric.size(),
         }
     }
 
@@ -182,7 +185,7 @@ impl Pass<'_> {
             &particles.state.previous_position,
         ) {
             Anchors::Straight(tethers) => {
-                if let Some(lattice) = &topology.lattice {
+                if let Some(lattice) = topology.lattice() {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
                     let effort = particles.state.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
@@ -206,10 +209,9 @@ impl Pass<'_> {
             coupling.held -= coupling.normal.dot(place);
         }
         self.bend(&topology.hinges, particles);
-        if let Some(lattice) = &topology.lattice {
-            self.solve_lattice(lattice, particles);
-        } else if let Some(fabric) = &topology.fabric {
-            self.solve_fabric(fabric, particles);
+        match &topology.layout {
+            Layout::Sheet(sheet) => self.solve_lattice(&sheet.lattice, particles),
+            Layout::Mesh(fabric) => self.solve_fabric(fabric, particles),
         }
     }
 
@@ -254,21 +256,21 @@ impl Pass<'_> {
     }
 }
 
-/// Applies internal viscosity, and inertia in the same sweep for sheets. Returns whether the particles moved.
+/// Internal viscosity, and inertia in the same sweep where there is one. Returns how many particles moved: the first ones.
 pub fn integrate(
     substep: &Substep,
     topology: &Topology,
     material: &Coefficients,
     verlet: Verlet,
     particles: &mut Particles,
-) -> bool {
+) -> usize {
     let seconds_before = particles.state.substep_seconds;
     let damped = material.viscosity > 0.0
         && seconds_before > 0.0
         && !particles.is_empty()
         && particles.len() == topology.particles();
     if !damped {
-        return false;
+        return 0;
     }
     let density = particles.input.areal_density;
     let Particles {
@@ -292,45 +294,47 @@ pub fn integrate(
         ..
     } = particles;
     let rigid = RigidMotion::fit(mass, position, previous_position);
-    if let Some(lattice) = &topology.lattice {
-        let area = lattice.spacing.x * lattice.spacing.y;
-        // ν = c L²/(4 h) on a square grid.
-        let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
-        let motion = SheetMotion {
-            sheet: Sheet {
-                columns: lattice.columns as usize,
-                rows: lattice.rows as usize,
-                position: SharedPoints::new(position),
-                inv_mass: Shared::new(inv_mass),
-                normal: None,
-                pressed: None,
-                give: Give::default(),
-                lengths: None,
-            },
-            previous: SharedPoints::new(previous_position),
-            lost: SharedPoints::new(lost_displacement),
-            acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
-            conductance: 0.25 * c * density * area,
-            rigid,
-            verlet,
-        };
-        sweep(substep, motion, scratch);
-        return true;
+    match &topology.layout {
+        Layout::Sheet(SheetLayout { lattice, .. }) => {
+            let area = lattice.spacing.x * lattice.spacing.y;
+            // ν = c L²/(4 h) on a square grid.
+            let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
+            let motion = Motion {
+                sheet: Sheet {
+                    columns: lattice.columns as usize,
+                    rows: lattice.rows as usize,
+                    position: SharedPoints::new(position),
+                    inv_mass: Shared::new(inv_mass),
+                    normal: None,
+                    pressed: None,
+                    give: Give::default(),
+                    lengths: None,
+                },
+                previous: SharedPoints::new(previous_position),
+                lost: SharedPoints::new(lost_displacement),
+                acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
+                conductance: 0.25 * c * density * area,
+                rigid,
+                verlet,
+            };
+            sweep(substep, motion, scratch);
+            motion.sheet.columns * motion.sheet.rows
+        }
+        Layout::Mesh(fabric) => {
+            let viscosity = material.viscosity * seconds_before;
+            mesh::exchange(
+                fabric,
+                position,
+                previous_position,
+                lost_displacement,
+                inv_mass,
+                rigid,
+                viscosity,
+                density,
+            );
+            0
+        }
     }
-    if let Some(fabric) = &topology.fabric {
-        let viscosity = material.viscosity * seconds_before;
-        mesh::exchange(
-            fabric,
-            position,
-            previous_position,
-            lost_displacement,
-            inv_mass,
-            rigid,
-            viscosity,
-            density,
-        );
-    }
-    false
 }
 
 /// Moves a sheet, in blocks of rows, one for each part of the workers.

@@ -89,7 +89,7 @@ impl Pass<'_> {
         let spacing = size / count;
         // κ = 4 h² T/(m L) of a cloth that hangs by its upper edge.
         let kappa = 4.0 * self.seconds * self.seconds * self.gravity.max(1.0) * size;
-        let softness = if self.topology.fabric.is_some() {
+        let softness = if self.topology.fabric().is_some() {
             MESH
         } else {
             SHEET

@@ -32,8 +32,10 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
         },
         gravity: cloth.frame.vector_to_frame(substep.gravity),
     };
-    let moved = cloth.method == Method::Lines
-        && chains::integrate(substep, topology, material, verlet, particles);
+    let moved = match cloth.method {
+        Method::Lines => chains::integrate(substep, topology, material, verlet, particles),
+        Method::Springs => 0,
+    };
     let Particles {
         state:
             State {
@@ -51,7 +53,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             },
         ..
     } = particles;
-    if !moved {
+    if moved < inv_mass.len() {
         verlet.step(
             substep.level,
             position,
@@ -59,6 +61,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             lost_displacement,
             (!acceleration.is_empty()).then_some(&*acceleration),
             inv_mass,
+            moved..inv_mass.len(),
         );
     }
     for (pin, place) in held.pins() {

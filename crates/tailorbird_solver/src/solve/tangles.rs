@@ -14,7 +14,11 @@ use crate::{
     },
     particles::{Input, Particles, State},
     points::Points,
-    topology::{Topology, lattice::Lattice},
+    topology::{
+        Topology,
+        lattice::Lattice,
+        layout::{Layout, SheetLayout},
+    },
 };
 
 /// Damps tangled particles: an edge compressed below 70 % of its rest length gets the rigid motion of the whole cloth. Conserves momentum
@@ -44,88 +48,91 @@ pub fn damp(
         input: Input { mass, inv_mass, .. },
         ..
     } = particles;
-    if let Some(lattice) = &topology.lattice {
-        let sheet = bare(lattice, position, inv_mass);
-        let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
-        // A cloth that carries bodies takes more substeps for them already, and would throw them.
-        if couplings.is_empty() {
-            let side = lattice.columns.max(lattice.rows) as f32;
-            let longest = Longest {
-                times: survey.longest,
-                part: survey.longest / side,
-            };
-            let edges = EdgeSurvey {
-                strained: survey.strained,
-                longest,
-                granted: grant.is_much(),
-                is_mesh: false,
-            };
-            effort.update(edges, *touch);
-        } else {
-            *effort = Effort::default();
-        }
-        grant.renew(Threads::Sheet(*lattice), position, seconds, *effort);
-        if !survey.squeezed {
-            return;
-        }
-        let whole = RigidMotion::of_all(mass, position, previous_position);
-        let previous = SharedPoints::new(previous_position);
-        let sheet = bare(lattice, position, inv_mass);
-        squeeze::stop(level, sheet, previous, lattice.spacing, whole);
-        if free {
-            give_back(whole, mass, position, previous_position);
-        }
-    } else if let Some(fabric) = &topology.fabric {
-        let is_squeezed = |position: &Points, [a, b]: [u32; 2], rest_length: f32| {
-            let [a, b] = [a, b].map(|i| position.get(i as usize));
-            a.distance_squared(b) < squeeze::LEAST * rest_length * rest_length
-        };
-        let (mut squeezed, mut strained, mut count) = (false, 0, 0);
-        let (mut far, mut farthest) = (0.0_f32, 0.0_f32);
-        for ([a, b], rest_length) in fabric.chains().edges() {
-            let [a, b] = [a, b].map(|i| position.get(i as usize));
-            let (q, l2) = (a.distance_squared(b), rest_length * rest_length);
-            squeezed |= q < squeeze::LEAST * l2;
-            count += 1;
-            if q > allowed * allowed * l2 {
-                far = far.max(q / l2);
-                farthest = farthest.max(q);
-                strained += 1;
+    match &topology.layout {
+        Layout::Sheet(SheetLayout { lattice, .. }) => {
+            let sheet = bare(lattice, position, inv_mass);
+            let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
+            // What carries bodies takes more substeps for them already, and would throw them.
+            if couplings.is_empty() {
+                let side = lattice.columns.max(lattice.rows) as f32;
+                let longest = Longest {
+                    times: survey.longest,
+                    part: survey.longest / side,
+                };
+                let seen = Seen {
+                    strained: survey.strained,
+                    longest,
+                    granted: grant.is_much(),
+                    is_mesh: false,
+                };
+                effort.see(seen, *touch);
+            } else {
+                *effort = Effort::default();
+            }
+            grant.renew(Threads::Sheet(*lattice), position, seconds, *effort);
+            if !survey.squeezed {
+                return;
+            }
+            let whole = RigidMotion::of_all(mass, position, previous_position);
+            let previous = SharedPoints::new(previous_position);
+            let sheet = bare(lattice, position, inv_mass);
+            squeeze::stop(level, sheet, previous, lattice.spacing, whole);
+            if free {
+                give_back(whole, mass, position, previous_position);
             }
         }
-        if couplings.is_empty() {
-            let part = strained as f32 / count.max(1) as f32;
-            let longest = Longest {
-                times: far.sqrt(),
-                part: farthest.sqrt() / fabric.size(),
+        Layout::Mesh(fabric) => {
+            let is_squeezed = |position: &Points, [a, b]: [u32; 2], rest_length: f32| {
+                let [a, b] = [a, b].map(|i| position.get(i as usize));
+                a.distance_squared(b) < squeeze::LEAST * rest_length * rest_length
             };
-            let edges = EdgeSurvey {
-                strained: part,
-                longest,
-                granted: !grant.is_empty(),
-                is_mesh: true,
-            };
-            effort.update(edges, *touch);
-        } else {
-            *effort = Effort::default();
-        }
-        grant.renew(Threads::Mesh(fabric), position, seconds, *effort);
-        if !squeezed {
-            return;
-        }
-        let whole = RigidMotion::of_all(mass, position, previous_position);
-        for (ends, rest_length) in fabric.chains().edges() {
-            if is_squeezed(position, ends, rest_length) {
-                for i in ends.map(|i| i as usize) {
-                    if inv_mass[i] > 0.0 {
-                        let place = position.get(i);
-                        previous_position.set(i, place - whole.at(place));
+            let (mut squeezed, mut strained, mut count) = (false, 0, 0);
+            let (mut far, mut farthest) = (0.0_f32, 0.0_f32);
+            for ([a, b], rest_length) in fabric.chains().edges() {
+                let [a, b] = [a, b].map(|i| position.get(i as usize));
+                let (q, l2) = (a.distance_squared(b), rest_length * rest_length);
+                squeezed |= q < squeeze::LEAST * l2;
+                count += 1;
+                if q > allowed * allowed * l2 {
+                    far = far.max(q / l2);
+                    farthest = farthest.max(q);
+                    strained += 1;
+                }
+            }
+            if couplings.is_empty() {
+                let part = strained as f32 / count.max(1) as f32;
+                let longest = Longest {
+                    times: far.sqrt(),
+                    part: farthest.sqrt() / fabric.size(),
+                };
+                let seen = Seen {
+                    strained: part,
+                    longest,
+                    granted: !grant.is_empty(),
+                    is_mesh: true,
+                };
+                effort.see(seen, *touch);
+            } else {
+                *effort = Effort::default();
+            }
+            grant.renew(Threads::Mesh(fabric), position, seconds, *effort);
+            if !squeezed {
+                return;
+            }
+            let whole = RigidMotion::of_all(mass, position, previous_position);
+            for (ends, rest_length) in fabric.chains().edges() {
+                if is_squeezed(position, ends, rest_length) {
+                    for i in ends.map(|i| i as usize) {
+                        if inv_mass[i] > 0.0 {
+                            let place = position.get(i);
+                            previous_position.set(i, place - whole.at(place));
+                        }
                     }
                 }
             }
-        }
-        if free {
-            give_back(whole, mass, position, previous_position);
+            if free {
+                give_back(whole, mass, position, previous_position);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 
 use super::{
     Topology,
@@ -11,6 +11,7 @@ use super::{
     fabric::Fabric,
     hinges::HingeConstraints,
     lattice::Lattice,
+    layout::{Layout, SheetLayout},
     mesh_edges::MeshEdges,
     neighbors::NeighborLists,
     order::ParticleOrder,
@@ -31,6 +32,7 @@ const DIAGONAL: f32 = 0.9;
 pub(super) fn build(
     positions: &[Vec3],
     indices: &[u32],
+    uvs: &[Vec2],
     weld_distance: f32,
     scale: Vec3,
 ) -> Result<Topology, ShapeError> {
@@ -41,6 +43,7 @@ pub(super) fn build(
             triangles: 0,
         });
     }
+    let uvs = (!uvs.is_empty()).then(|| repaired.corner_uvs(indices, uvs));
     let mut topology = Topology {
         dropped: repaired.dropped(),
         rest_positions: repaired.positions.iter().map(|p| *p * scale).collect(),
@@ -54,7 +57,7 @@ pub(super) fn build(
     if topology.triangles.len() * 3 < indices.len() {
         topology.source_triangles = repaired.source_triangles;
     }
-    arrange(&mut topology, &repaired.edges);
+    arrange(&mut topology, &repaired.edges, uvs.as_deref());
     Ok(topology)
 }
 
@@ -75,25 +78,25 @@ pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Neig
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
-fn arrange(topology: &mut Topology, edges: &MeshEdges) {
+fn arrange(topology: &mut Topology, edges: &MeshEdges, uvs: Option<&[[Vec2; 3]]>) {
     topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
     let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-    if let Some(grid) = Recognized::detect(rest, triangles, edges, None) {
-        topology.lattice = Some(Lattice {
+    if let Some(grid) = Recognized::detect(rest, triangles, edges, uvs) {
+        topology.layout = Layout::Sheet(SheetLayout::from(Lattice {
             columns: grid.columns as u32,
             rows: grid.rows as u32,
             spacing: grid.spacing,
-        });
+        }));
         reorder(topology, grid.order);
     } else {
-        let mut weave = Weave::new(rest, triangles, edges, None);
+        let mut weave = Weave::new(rest, triangles, edges, uvs);
         let (chains, order) = Chains::build(rest, &weave);
         weave.renumber(&inverse(&order));
         reorder(topology, order);
         let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-        topology.fabric = Some(Fabric::new(rest, triangles, chains, &weave));
+        topology.layout = Layout::Mesh(Fabric::new(rest, triangles, chains, &weave));
     }
-    if !(topology.flat && topology.lattice.is_some()) {
+    if !(topology.flat && topology.lattice().is_some()) {
         topology.hinges = HingeConstraints::new(&topology.triangles, &topology.rest_positions);
     }
 }

@@ -3,22 +3,25 @@
 use bevy_math::{UVec2, Vec2, Vec3};
 
 use super::{
-    Topology, constraints::ConstraintFamily, constraints::DistanceConstraints, lattice::Lattice,
+    Topology,
+    constraints::ConstraintFamily,
+    constraints::DistanceConstraints,
+    lattice::Lattice,
+    layout::{Layout, SheetLayout},
 };
 
 /// Builds the topology of a grid from its particles in row-major order. Areas and revision are left to the caller.
 pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
     Topology {
-        grid: Some(resolution),
         flat: true,
-        lattice: Some(Lattice {
+        layout: Layout::Sheet(SheetLayout::from(Lattice {
             columns: resolution.x,
             rows: resolution.y,
             spacing: Vec2::new(
                 rest_positions[0].distance(rest_positions[1]),
                 rest_positions[0].distance(rest_positions[resolution.x as usize]),
             ),
-        }),
+        })),
         rest_positions,
         ..Default::default()
     }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, hash_map::Entry};
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 
 use super::{
     mesh_edges::MeshEdges,
@@ -53,8 +53,22 @@ pub struct Repaired {
 }
 
 impl Repaired {
-    /// Welds the vertices that are no further apart than `weld_distance` \[m\], leaves out triangles that are degenerate (in the entity's
-    /// own space or scaled) or there already, and turns around those that face the wrong way.
+    /// Texture coordinates at the corners of each triangle, of a mesh with these indices and these coordinates of its vertices.
+    pub fn corner_uvs(&self, indices: &[u32], uvs: &[Vec2]) -> Vec<[Vec2; 3]> {
+        let source = self.triangles.iter().zip(&self.source_triangles);
+        let corners = source.map(|(particles, source)| {
+            let vertices = &indices[3 * *source as usize..][..3];
+            particles.map(|particle| {
+                let is_there = |v: &&u32| self.particle_of_vertex[**v as usize] == particle;
+                let vertex = vertices.iter().find(is_there);
+                vertex.map_or(Vec2::NAN, |vertex| uvs[*vertex as usize])
+            })
+        });
+        corners.collect()
+    }
+
+    /// Welds the vertices that are no further apart than `weld_distance` \[m\], leaves out triangles that are degenerate (in the
+    /// entity's own space or scaled) or there already, and turns around those that face the wrong way.
     ///
     /// The indices of the particles do not depend on the scale.
     ///

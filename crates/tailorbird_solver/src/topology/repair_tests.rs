@@ -144,6 +144,7 @@ fn what_is_too_far_or_too_small_to_count_is_refused() {
         ClothShape::Mesh {
             positions,
             indices,
+            uvs: Vec::new(),
             weld_distance: 0.0,
         }
     };
@@ -172,7 +173,7 @@ fn a_grid_with_a_loose_vertex_is_still_recognised() {
     let mut positions = grid.rest_positions();
     positions.push(Vec3::splat(2.0));
     let topology = Topology::build(&ClothShape::mesh(positions, indices), Vec3::ONE);
-    assert!(topology.expect("valid").lattice.is_some());
+    assert!(topology.expect("valid").lattice().is_some());
 }
 
 proptest! {

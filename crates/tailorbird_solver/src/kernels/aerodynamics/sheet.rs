@@ -9,7 +9,7 @@ use super::Air;
 use crate::{
     kernels::{
         cells::{AroundParticle, gather, with_cells},
-        lanes::{Factor, Reading, Shared, SharedPoints, V3, Window},
+        lanes::{Factor, Reading, SharedPoints, V3, Window},
     },
     points::Points,
     topology::lattice::Lattice,
@@ -33,7 +33,7 @@ impl AirSheet<'_> {
     /// Columns and rows.
     ///
     /// # Panics
-    /// When an array does not have one element for each particle.
+    /// When there are fewer of anything than particles in columns and rows.
     fn check(&self) -> [usize; 2] {
         let size = [self.lattice.columns, self.lattice.rows].map(|n| n as usize);
         let n = size[0] * size[1];
@@ -43,10 +43,10 @@ impl AirSheet<'_> {
             self.acceleration.z,
         ];
         assert!(
-            self.position.is_of(n)
-                && self.previous.is_of(n)
-                && self.inv_mass.len() == n
-                && acceleration.map(Shared::len) == [n; 3],
+            self.position.has(n)
+                && self.previous.has(n)
+                && self.inv_mass.len() >= n
+                && acceleration.iter().all(|values| values.len() >= n),
             "a sheet of {} x {} particles",
             size[0],
             size[1]

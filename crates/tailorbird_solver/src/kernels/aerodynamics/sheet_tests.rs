@@ -42,7 +42,7 @@ impl Wavy {
         inv_mass[0] = 0.0;
         inv_mass[columns as usize - 1] = 0.0;
         Self {
-            lattice: topology.lattice.expect("a grid"),
+            lattice: *topology.lattice().expect("a grid"),
             triangles: topology.triangles().iter().collect(),
             rest_areas: topology.triangle_areas().collect(),
             position,

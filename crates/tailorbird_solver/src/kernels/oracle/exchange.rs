@@ -15,7 +15,7 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let (positions, triangles) = delaunay(12, 3);
     let topology = Topology::build(&ClothShape::mesh(positions, triangles.concat()), Vec3::ONE);
     let topology = topology.expect("a mesh");
-    let fabric = topology.fabric.as_ref().expect("no grid");
+    let fabric = topology.fabric().expect("no grid");
     let n = topology.particles();
     let point = |i: usize, seed: u64| {
         let axis = |k: u64| crate::topology::test_meshes::random(i, seed + k) - 0.5;

@@ -199,7 +199,7 @@ fn rings_of_a_mesh() {
 
 fn chains_of(cloth: ClothShape, has_rings: bool) {
     let topology = Topology::build(&cloth, Vec3::ONE).expect("a mesh");
-    let fabric = topology.fabric.as_ref().expect("no grid");
+    let fabric = topology.fabric().expect("no grid");
     let closed = |batch: &ChainBatch| batch.closing.is_some();
     assert_eq!(fabric.chains().batches.iter().any(closed), has_rings);
     let rest = topology.rest_positions.iter().map(|p| *p * 20.0);

@@ -42,6 +42,7 @@ fn inertia() {
                     &mut state.lost,
                     pushed.then_some(&state.acceleration),
                     &state.inv_mass,
+                    0..state.inv_mass.len(),
                 );
             });
         }
@@ -144,6 +145,7 @@ fn viscosity_keeps_momentum_and_is_inertia_without_it() {
         &mut expected.lost,
         None,
         &expected.inv_mass,
+        0..expected.inv_mass.len(),
     );
     assert!(plain.bits() == expected.bits());
     assert!(damped.bits() != expected.bits());
