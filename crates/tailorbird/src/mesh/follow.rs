@@ -1,4 +1,4 @@
-//! How the vertices of a mesh follow from particles and normals.
+//! Vertices of a mesh, from particles and normals.
 
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};
@@ -16,7 +16,7 @@ use crate::drawn::ClothDrawnHolds;
 /// Vertices that a task has at least.
 pub(super) const PIECE: usize = 8192;
 
-/// What vertices follow.
+/// State of a cloth that vertices follow.
 #[derive(Clone, Copy)]
 pub(super) struct Drawn<'a> {
     pub particles: &'a ClothParticles,
@@ -29,14 +29,14 @@ pub(super) struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// Whether normals in the cloth's frame are those in its space.
+    /// Returns whether normals in the cloth's frame are those in its space.
     fn is_scaled_evenly(&self) -> bool {
         let Vec3 { x, y, z } = self.scale;
         x == y && y == z && x > 0.0
     }
 }
 
-/// Which particle and which normal each vertex of a mesh follows.
+/// Particle and normal that each vertex of a mesh follows.
 pub(super) struct Follow {
     pub bindings: Bindings,
     /// For each vertex its normal: of a particle when smooth, of a triangle when flat.

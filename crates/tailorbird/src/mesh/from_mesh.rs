@@ -23,29 +23,29 @@ use super::{
     plain::texture_coordinates,
 };
 
-/// Makes a cloth of the entity's `Mesh3d` or, where it has none, of all meshes below it, as soon as they are loaded: of a glTF
-/// scene, say. The [guide](super::garments) shows it.
+/// Makes a cloth of the entity's `Mesh3d` or, if it has none, of all meshes below it, as soon as they are loaded: of a glTF scene, say. The
+/// [guide](super::garments) shows it.
 ///
 /// The entity gets a [`Cloth`] of all triangles. Each mesh is replaced by a copy that the cloth moves, with the same UVs, colours,
-/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are
-/// kept in the main world, and may be compressed. Where the entities below are at that time counts, not where they are moved later.
+/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are kept in
+/// the main world, and may be compressed. The places of the entities below at that time count, not later ones.
 ///
-/// What moves the mesh by other means stays behind: of a skin and of morph targets the copy has nothing, and `SkinnedMesh` is taken off
-/// its entity, else each vertex would be moved twice. The log says so.
+/// Other means of moving the mesh are lost: the copy has neither a skin nor morph targets, and `SkinnedMesh` is taken off its entity,
+/// because each vertex would be moved twice. The log says so.
 ///
-/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made
-/// again, flat as the mesh is. Material, shading and pins that are given by place stay; pins that players made, and others given by
-/// index, go with the particles that they named. What is wrong with the assets is told by [`ClothStatus`], what
-/// was found in the triangles by [`Topology::report`](tailorbird_cloth::topology::Topology::report).
+/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made again,
+/// flat as the mesh is. Material, shading and pins by place stay; pins that players made, and other pins by index, go with the particles
+/// that they named. Errors in the assets are told by [`ClothStatus`], findings in the triangles by
+/// [`Topology::report`](tailorbird_cloth::topology::Topology::report).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Default)]
 #[require(ClothStatus)]
 pub struct ClothFromMesh {
     /// Vertices no further apart than this \[m\] become one particle, of different meshes as well.
     pub weld_distance: f32,
-    /// Which vertices are pinned; a pin beside those of [`ClothPins`]. What is painted is kept in [`ClothWeights`].
+    /// Vertices that are pinned; one pin beside those of [`ClothPins`]. Painted weights are kept in [`ClothWeights`].
     pub pins: MeshPins,
-    /// Which of the meshes below the entity it is made of.
+    /// Meshes below the entity that become the cloth.
     pub parts: MeshParts,
     /// Where its warp and weft run.
     pub threads: MeshThreads,
@@ -221,22 +221,22 @@ pub(super) fn cloth_from_mesh(
 /// Why a cloth that waits for its meshes is made.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Waiting {
-    /// Whether it is made whatever is found.
+    /// True if it is made whatever is found.
     asked: bool,
-    /// Whether meshes that it was made of are not what they were.
+    /// True if meshes that it was made of have changed.
     other_assets: bool,
-    /// Whether what was found was wrong: it is looked at again when a mesh asset, or what it is made of, changes.
+    /// True if the meshes were wrong: they are checked again when a mesh asset, or the cloth's list of meshes, changes.
     failed: bool,
 }
 
 impl ClothMeshSource {
-    /// Whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
+    /// Returns whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
     fn is_part_of(&self, other: &Self) -> bool {
         let mut all = self.parts.iter();
         all.all(|part| other.parts.iter().any(|other| part.is_same(other)))
     }
 
-    /// Whether a cloth of these meshes has the particles that one of those has.
+    /// Returns whether a cloth of these meshes has the particles of a cloth of those.
     fn has_same_particles(&self, other: &Self) -> bool {
         let mut pairs = self.parts.iter().zip(&other.parts);
         self.weld_distance == other.weld_distance
@@ -282,7 +282,7 @@ fn set_skins_aside(
     }
 }
 
-/// What a cloth is made of.
+/// Meshes that a cloth is made of.
 struct Made {
     cloth: Cloth,
     source: ClothMeshSource,
