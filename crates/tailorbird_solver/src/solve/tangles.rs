@@ -59,13 +59,13 @@ pub fn damp(
                     times: survey.longest,
                     part: survey.longest / side,
                 };
-                let seen = Seen {
+                let survey = EdgeSurvey {
                     strained: survey.strained,
                     longest,
                     granted: grant.is_much(),
                     is_mesh: false,
                 };
-                effort.see(seen, *touch);
+                effort.update(survey, *touch);
             } else {
                 *effort = Effort::default();
             }
@@ -105,13 +105,13 @@ pub fn damp(
                     times: far.sqrt(),
                     part: farthest.sqrt() / fabric.size(),
                 };
-                let seen = Seen {
+                let survey = EdgeSurvey {
                     strained: part,
                     longest,
                     granted: !grant.is_empty(),
                     is_mesh: true,
                 };
-                effort.see(seen, *touch);
+                effort.update(survey, *touch);
             } else {
                 *effort = Effort::default();
             }

@@ -123,7 +123,7 @@ fn ball() -> Colliders {
         body: None,
     };
     Colliders {
-        boxes: vec![ball.around()],
+        boxes: vec![ball.swept_box()],
         colliders: vec![ball],
         bodies: Vec::new(),
     }
