@@ -30,7 +30,7 @@ use tailorbird_cloth::{prelude::*, topology::constraints::ConstraintFamily};
 /// added before; does nothing without.
 pub struct ClothDebugPlugin;
 
-/// What is drawn of each cloth and collider; everything is off by default.
+/// Parts of each cloth and collider that are drawn; everything is off by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, GizmoConfigGroup)]
 #[reflect(Default)]
 pub struct ClothGizmos {
@@ -57,7 +57,7 @@ pub struct ClothGizmos {
 }
 
 impl ClothGizmos {
-    /// Whether anything of a cloth is drawn.
+    /// Returns whether anything of a cloth is drawn.
     fn shows_any(&self) -> bool {
         let no_cloth = Self {
             colliders: self.colliders,

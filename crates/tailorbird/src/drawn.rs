@@ -43,7 +43,7 @@ use tailorbird_cloth::{
 };
 use tailorbird_solver::points::Points;
 
-/// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
+/// Motion of a cloth's particles along with its holders when it is drawn. See the [module](self).
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothDrawnHolds {
@@ -57,7 +57,7 @@ pub struct ClothDrawnHolds {
     /// In storage order, in the cloth's frame \[m\]; empty where all are drawn where they are.
     #[reflect(ignore)]
     offsets: Points,
-    /// How each target moved from where the cloth is drawn to where it is now, in the cloth's frame.
+    /// Motion of each target from the time for which the cloth is drawn to the present one, in the cloth's frame.
     #[reflect(ignore)]
     motions: Vec<Option<Isometry3d>>,
 }
@@ -83,7 +83,7 @@ struct Weight {
 }
 
 impl ClothDrawnHolds {
-    /// How far along the sheet particles move along, as a part of the side of a square of the cloth's area [-].
+    /// Distance along the sheet within which particles move along, as a part of the side of a square of the cloth's area [-].
     pub const REACH: f32 = 0.6;
 
     /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
@@ -103,7 +103,7 @@ impl ClothDrawnHolds {
         (!self.is_still()).then_some(&self.offsets)
     }
 
-    /// Whether all particles are drawn where they are.
+    /// Returns whether all particles are drawn where they are.
     pub fn is_still(&self) -> bool {
         self.offsets.is_empty()
     }
@@ -161,7 +161,8 @@ impl ClothDrawnHolds {
         }
     }
 
-    /// Whether all that is held is drawn so far from where it is that it was put elsewhere, and the cloth has not stepped since.
+    /// Returns whether all held particles are drawn so far from their places that they were put elsewhere, and the cloth has not stepped
+    /// since.
     fn all_leap(&self) -> bool {
         /// Further than anything runs in the time that cloth is late \[m\].
         const LEAP: f32 = 1.0;
@@ -271,8 +272,7 @@ impl PartialOrd for Reached {
     }
 }
 
-/// How far it is along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite where it is
-/// further than `reach` \[m\].
+/// Distance along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite beyond `reach` \[m\].
 fn ways(topology: &Topology, from: impl Iterator<Item = u32>, reach: f32) -> Vec<f32> {
     let rest = &topology.rest_positions;
     let mut ways = vec![f32::INFINITY; rest.len()];

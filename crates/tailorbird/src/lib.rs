@@ -81,7 +81,7 @@ pub mod plugins;
 #[cfg(feature = "picking")]
 pub mod sphere_controls;
 
-/// What most games name.
+/// Names that most games need.
 pub mod prelude {
     #[cfg(feature = "gizmos")]
     pub use crate::debug::{ClothDebugPlugin, ClothGizmos};

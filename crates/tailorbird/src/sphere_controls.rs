@@ -97,13 +97,13 @@ impl SphereControls {
     }
 }
 
-/// Where the entity was after the last two fixed steps. Written by this plugin alone.
+/// Positions of the entity after the last two fixed steps. Written by this plugin alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct SphereControlsState {
     previous: Vec3,
     current: Vec3,
-    /// What was put into the `Transform` last; something else there was put there by somebody else.
+    /// Position that was put into the `Transform` last; another one there was put there by somebody else.
     drawn: Option<Vec3>,
 }
 

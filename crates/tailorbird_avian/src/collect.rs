@@ -43,7 +43,7 @@ pub(crate) struct BodyCollider {
     track: &'static TrackedPose,
 }
 
-/// What says where a collider is.
+/// Components that tell the pose of a collider.
 #[derive(bevy_ecs::query::QueryData)]
 pub(crate) struct Place {
     position: &'static Position,
@@ -53,7 +53,7 @@ pub(crate) struct Place {
 }
 
 impl PlaceItem<'_, '_> {
-    /// Where it is in the world, with its body where that is now.
+    /// Pose in the world, with the present pose of its body.
     pub(crate) fn pose(&self, body: Option<(Vec3, bevy_math::Quat)>) -> Isometry3d {
         match (body, self.in_body) {
             (Some((position, rotation)), Some(to)) => {
@@ -97,7 +97,7 @@ pub(crate) fn inverse_mass(
 }
 
 impl BodyItem<'_, '_> {
-    /// What cloth has to know of it, if cloth can push it at all.
+    /// Properties of the body for cloth, if cloth can push it at all.
     fn for_cloth(&self, body: Entity) -> Option<ColliderBody> {
         if !self.kind.is_dynamic() || self.disabled {
             return None;

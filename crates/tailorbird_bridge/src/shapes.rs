@@ -11,11 +11,11 @@ const FORGET_AFTER: u64 = 128;
 /// A part of an engine's shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Where it is in the whole \[m\].
+    /// Pose in the whole \[m\].
     pub at: Isometry3d,
-    /// What it is.
+    /// Shape of the part.
     pub shape: ColliderShape,
-    /// How far its surface is rounded off beyond the shape \[m\].
+    /// Distance by which its surface is rounded off beyond the shape \[m\].
     pub margin: f32,
 }
 
@@ -86,7 +86,7 @@ impl<S: Clone> ShapeCache<S> {
         self.known.len()
     }
 
-    /// Whether none is known.
+    /// Returns whether no part is known.
     pub fn is_empty(&self) -> bool {
         self.known.is_empty()
     }

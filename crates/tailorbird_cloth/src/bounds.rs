@@ -25,7 +25,7 @@ pub struct ClothBounds {
 }
 
 impl ClothBounds {
-    /// Whether a point lies inside or on the box.
+    /// Returns whether a point lies inside or on the box.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
@@ -38,7 +38,7 @@ impl ClothBounds {
         Some(Self { min, max })
     }
 
-    /// The box as the solver has it.
+    /// Box in the form of the solver.
     pub(crate) fn bounds(self) -> Bounds {
         let Self { min, max } = self;
         Bounds { min, max }

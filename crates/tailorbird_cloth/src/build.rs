@@ -111,11 +111,11 @@ fn dropped(topology: &Topology) -> Vec<ClothErrorKind> {
 }
 
 impl ClothParticles {
-    /// Becomes as large as the new topology of a cloth whose scale alone changed, in the shape and motion that it has. Returns whether
-    /// it did: not where it has no particles yet.
+    /// Scales the cloth to its new topology, of which the scale alone changed, keeping shape and motion. Returns whether it did: not for a
+    /// cloth without particles.
     ///
-    /// One that is held in its frame grows about the frame's origin, one that is attached about the middle of what is held, one that is
-    /// free about its own: these may be anywhere.
+    /// A cloth that is held in its frame grows about the frame's origin, an attached one about the middle of the held particles, a free one
+    /// about its own: these may be anywhere.
     fn grow(&mut self, old: &Topology, new: &Topology, attached: &AttachedParticles) -> bool {
         let count = self.len();
         let ratio = new.scale / old.scale;

@@ -76,7 +76,7 @@ impl Cloth {
         }
     }
 
-    /// As [`Cloth::grid`], checked.
+    /// Checked form of [`Cloth::grid`].
     ///
     /// # Errors
     /// [`ShapeError::Size`], [`ShapeError::Resolution`].
@@ -94,11 +94,11 @@ impl Cloth {
         }
     }
 
-    /// As [`Cloth::mesh`], checked.
+    /// Checked form of [`Cloth::mesh`].
     ///
     /// # Errors
-    /// [`ShapeError::NoTriangles`], [`ShapeError::IndexCount`], [`ShapeError::IndexOutOfRange`],
-    /// [`ShapeError::NonFinitePosition`], [`ShapeError::PositionTooFar`].
+    /// [`ShapeError::NoTriangles`], [`ShapeError::IndexCount`], [`ShapeError::IndexOutOfRange`], [`ShapeError::NonFinitePosition`],
+    /// [`ShapeError::PositionTooFar`].
     pub fn try_mesh(
         positions: impl Into<Vec<Vec3>>,
         indices: impl Into<Vec<u32>>,
@@ -132,10 +132,10 @@ impl Cloth {
         self.shape.resolution()
     }
 
-    /// Where the particles lie at rest, in the entity's own space \[m\]: their order is that of the particles.
+    /// Positions of the particles at rest, in the entity's own space \[m\], in the order of the particles.
     ///
-    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded
-    /// vertex, without those of no triangle. Empty when the shape is invalid.
+    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded vertex, without those of no
+    /// triangle. Empty when the shape is invalid.
     pub fn rest_positions(&self) -> Vec<Vec3> {
         self.shape.rest_positions()
     }

@@ -9,11 +9,11 @@ use tailorbird_solver::{topology::Topology, wall_clock::WallClock};
 
 use crate::particles::ClothParticles;
 
-/// How long the last step took. Written by the cloth systems alone.
+/// Duration of the last step. Written by the cloth systems alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothStepTime {
-    /// All substeps; with wind, normals, boxes and checks where nobody has systems in
+    /// Time of all substeps; with wind, normals, boxes and checks if nobody has systems in
     /// [`ClothSubstep`](crate::schedule::ClothSubstep).
     pub simulate: Duration,
     /// The whole step, from the first system of [`ClothSystems::Prepare`](crate::schedule::ClothSystems) to the last of
@@ -33,7 +33,7 @@ pub(crate) fn stop_clock(mut time: ResMut<ClothStepTime>) {
     time.total = time.start.map_or(Duration::ZERO, |start| start.elapsed());
 }
 
-/// How far the edges of a cloth are stretched: l/L − 1 over its stretch constraints [-].
+/// Stretch of the edges of a cloth: l/L − 1 over its stretch constraints [-].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct Stretch {
     /// Mean of max(0, l/L − 1).
@@ -45,7 +45,7 @@ pub struct Stretch {
 }
 
 impl ClothParticles {
-    /// How far the edges are stretched. Zero for a cloth without edges.
+    /// Stretch of the edges. Zero for a cloth without edges.
     pub fn stretch(&self, topology: &Topology) -> Stretch {
         let mut values: Vec<f32> = topology
             .stretch_edges()

@@ -65,7 +65,7 @@ impl ClothForces {
         });
     }
 
-    /// Whether nothing acts.
+    /// Returns whether no force acts.
     pub fn is_empty(&self) -> bool {
         self.forces.is_empty() && self.accelerations.is_empty() && self.impulses.is_empty()
     }

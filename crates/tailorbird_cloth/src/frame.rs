@@ -24,21 +24,21 @@ use crate::{
 /// The rigid frame that a cloth's particles live in: translation and rotation of the entity. Scale is part of the rest
 /// shape instead.
 ///
-/// Where the entity moves, the frame moves with it, evenly over the substeps, and pins with the frame. Free particles
+/// If the entity moves, the frame moves with it, evenly over the substeps, and pins with the frame. Free particles
 /// keep their place in the world: they are expressed in the moved frame. So a cloth far from the world's origin is
 /// as precise as one at it.
 #[derive(Component, Clone, Copy, Debug, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothFrame {
-    /// Where it is, and its path in this step.
+    /// Pose, and path in this step.
     pub(crate) frame: Frame,
     pub(crate) scale: Vec3,
     pub(crate) placed: bool,
     /// The last valid one.
     inertia: ClothInertia,
-    /// What was felt of the last step [m/s].
+    /// Part of the velocity in the last step that was felt [m/s].
     velocity: Vec3,
-    /// Whether the cloth goes where its entity goes, and feels nothing of it.
+    /// True if the cloth goes where its entity goes, and feels nothing of it.
     pub(crate) carries: bool,
     asked: Option<TeleportMode>,
     teleported: Option<TeleportMode>,
@@ -81,17 +81,17 @@ impl ClothFrame {
         self.asked = Some(mode);
     }
 
-    /// Whether [`Self::teleport`] was called since the last step.
+    /// Returns whether [`Self::teleport`] was called since the last step.
     pub(crate) fn is_asked(&self) -> bool {
         self.asked.is_some()
     }
 
-    /// What became of the cloth, where it was put elsewhere in this step.
+    /// Teleport of the cloth in this step, if there was one.
     pub(crate) fn take_teleport(&mut self) -> Option<TeleportMode> {
         self.teleported.take()
     }
 
-    /// The same for what holds the cloth: a cloth that its entity carries was put elsewhere with it, whatever its holder did.
+    /// Start of the step for a holder: a cloth that its entity carries was put elsewhere with it, whatever its holder did.
     pub(crate) fn start_for(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
         match self.frame.jump {
             Some(jump) if self.carries => jump * start,

@@ -30,7 +30,7 @@ struct Hand {
 }
 
 impl ClothGrab {
-    /// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
+    /// Largest distance of the held particle from a neighbour, as a multiple of their distance at rest.
     pub const MOST_STRETCH: f32 = tailorbird_solver::hand::MOST_STRETCH;
 
     /// Takes a particle, and those within `radius` \[m\] along the sheet (its direct neighbours at least). `target` is
@@ -62,7 +62,7 @@ impl ClothGrab {
         self.held.as_ref().map(|hand| hand.particle)
     }
 
-    /// Where the hand is in the world \[m\].
+    /// Position of the hand in the world \[m\].
     pub fn target(&self) -> Option<Vec3> {
         self.held.as_ref().map(|hand| hand.target)
     }

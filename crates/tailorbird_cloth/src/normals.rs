@@ -9,7 +9,7 @@ use tailorbird_solver::{kernels::rigid, points::Points, topology::Topology};
 
 pub use recompute::recompute_normals;
 
-/// Which normals a cloth is shaded with.
+/// Normals that a cloth is shaded with.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -35,7 +35,7 @@ pub struct ClothNormals {
 }
 
 impl ClothNormals {
-    /// What each normal belongs to.
+    /// Shading: particles or triangles that the normals belong to.
     pub fn shading(&self) -> ClothShading {
         self.shading
     }
@@ -45,12 +45,12 @@ impl ClothNormals {
         self.current.len()
     }
 
-    /// What the normals take on the heap \[byte\].
+    /// Heap memory of the normals \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.current.memory_bytes() + self.previous.memory_bytes()
     }
 
-    /// Whether there are none yet.
+    /// Returns whether there are none yet.
     pub fn is_empty(&self) -> bool {
         self.current.is_empty()
     }

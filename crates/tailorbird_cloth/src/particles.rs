@@ -34,7 +34,7 @@ impl ClothParticles {
         Self(Particles::at_rest(topology))
     }
 
-    /// Where a particle is in the world \[m\].
+    /// Position of a particle in the world \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.

@@ -30,18 +30,18 @@ pub struct ClothPins {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 pub struct ClothPin {
-    /// What it holds.
+    /// Particles that the pin holds.
     pub selection: PinSelection,
-    /// Where it holds it, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new
-    /// cloth). The particles move there within one step, evenly over the substeps.
+    /// Place of the pin, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new cloth). The
+    /// particles move there within one step, evenly over the substeps.
     #[cfg_attr(feature = "serialize", serde(default))]
     pub target: Option<Vec3>,
-    /// Who made it.
+    /// Author of the pin.
     #[cfg_attr(feature = "serialize", serde(default))]
     pub author: PinAuthor,
 }
 
-/// Which particles a pin holds.
+/// Particles that a pin holds.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -83,7 +83,7 @@ pub enum GridCorner {
 }
 
 impl GridCorner {
-    /// All four.
+    /// All four corners.
     pub const ALL: [Self; 4] = [
         Self::TopLeft,
         Self::TopRight,
@@ -109,7 +109,7 @@ pub enum GridEdge {
     Right,
 }
 
-/// Who made a pin.
+/// Author of a pin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -141,7 +141,7 @@ impl ClothPin {
 }
 
 impl ClothPin {
-    /// Whether it names particles by where they are, so that it means something on another shape as well.
+    /// Returns whether it selects particles by their positions, so that it means something on another shape as well.
     pub fn is_by_place(&self) -> bool {
         !matches!(
             self.selection,
@@ -188,7 +188,7 @@ impl ClothPins {
         self
     }
 
-    /// Whether the player made any of the pins.
+    /// Returns whether the player made any of the pins.
     pub fn has_user_pins(&self) -> bool {
         self.pins.iter().any(|pin| pin.author == PinAuthor::User)
     }

@@ -22,7 +22,7 @@ use crate::{
     topology::ClothTopology,
 };
 
-/// What the stages need of a cloth. Opaque: the cloth's components are what to read.
+/// Components of a cloth that the stages need. Opaque: read the cloth's components instead.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub struct ClothStages {

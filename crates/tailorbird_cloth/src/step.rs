@@ -53,7 +53,7 @@ impl Default for SimdLevel {
 /// At most this many times as many substeps are taken for bodies that a cloth carries.
 const MOST_LOADED: f32 = 4.0;
 
-/// Where gravity is less, loads are compared with the cloth's weight in this [m/s²].
+/// Least gravity for the weight that loads are compared with [m/s²].
 const LEAST_GRAVITY: f32 = 1.0;
 
 impl ClothStep {
@@ -62,8 +62,7 @@ impl ClothStep {
         self.seconds
     }
 
-    /// How much time passes meanwhile for everything else \[s\]: see
-    /// [`ClothSettings::time_scale`](crate::settings::ClothSettings::time_scale).
+    /// Time that passes meanwhile for everything else \[s\]: see [`ClothSettings::time_scale`](crate::settings::ClothSettings::time_scale).
     pub fn world_seconds(&self) -> f32 {
         self.world_seconds
     }
@@ -84,7 +83,7 @@ impl ClothStep {
         self.substep
     }
 
-    /// How much of the step has passed at the end of the substep in progress, 0 to 1.
+    /// Part of the step that has passed at the end of the substep in progress, 0 to 1.
     pub fn fraction(&self) -> f32 {
         (self.substep + 1) as f32 / self.substeps.max(1) as f32
     }
@@ -104,12 +103,12 @@ impl ClothStep {
         self.elapsed
     }
 
-    /// How many steps have begun.
+    /// Number of steps that have begun.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Whether this tick simulates: not paused, and time passes.
+    /// Returns whether this tick simulates: not paused, and time passes.
     pub fn running(&self) -> bool {
         self.running
     }
@@ -119,7 +118,7 @@ impl ClothStep {
         self.level.0
     }
 
-    /// Whether it pays to share several cloths out to threads.
+    /// Returns whether it pays to share several cloths out to threads.
     pub fn parallel(&self) -> bool {
         self.parallel
     }
@@ -152,8 +151,8 @@ impl ClothStep {
         self.fixed_substeps(own).unwrap_or_else(automatic).max(1)
     }
 
-    /// How many times as many substeps a cloth takes for the bodies that it carries: the tension of what is held grows with what hangs
-    /// on it, and the waves of short length that tension drives become too fast for a substep.
+    /// Factor of the substeps of a cloth for the bodies that it carries: the tension grows with their weight, and raises the speed of
+    /// transverse waves, which a substep must resolve.
     fn loaded(&self, particles: &ClothParticles) -> f32 {
         let load = particles.0.state.load;
         if load == 0.0 || !particles.0.input.inv_mass.contains(&0.0) {

@@ -10,8 +10,8 @@ use tailorbird_solver::tethers::Tethers;
 
 pub use build::build_tethers;
 
-/// How far each particle gets from up to four of the pins: the way along the sheet at rest. In storage order. Written by
-/// [`build_tethers`] alone.
+/// Geodesic distances of each particle from up to four of the pins, along the sheet at rest. In storage order. Written by [`build_tethers`]
+/// alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothTethers(#[reflect(ignore)] pub(crate) Tethers);

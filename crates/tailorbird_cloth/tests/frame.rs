@@ -1,4 +1,4 @@
-//! What a cloth feels of its entity's motion.
+//! Effect of an entity's motion on its cloth.
 
 #![cfg(test)]
 
@@ -177,7 +177,7 @@ fn no_faster_than_the_limit() {
     assert!(way < 0.01, "{way} m");
 }
 
-/// What was told of teleports.
+/// Teleports that were told.
 #[derive(Resource, Default)]
 struct Told(Vec<TeleportMode>);
 

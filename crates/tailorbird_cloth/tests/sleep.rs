@@ -42,7 +42,7 @@ fn is_asleep(sheet: &Sheet) -> bool {
     sheet.get::<ClothRest>().is_asleep()
 }
 
-/// How far the particle went that went furthest [m].
+/// Largest displacement of a particle [m].
 fn moved(sheet: &Sheet, from: &[Vec3]) -> f32 {
     let ways = sheet.particles().positions().zip(from);
     ways.map(|(to, from)| to.distance(*from))

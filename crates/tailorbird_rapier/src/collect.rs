@@ -19,7 +19,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::shape::{self, isometry};
 
-/// Where a collider is in the world, with its body where that is now.
+/// Pose of a collider in the world, with the present pose of its body.
 pub(crate) fn pose(collider: &Collider, bodies: &RapierRigidBodySet) -> Isometry3d {
     let body = collider.parent().and_then(|body| bodies.bodies.get(body));
     match (body, collider.position_wrt_parent()) {
@@ -41,7 +41,7 @@ pub(crate) fn inverse_mass(body: &RigidBody) -> (Vec3, Mat3) {
     (properties.effective_inv_mass, inv_inertia)
 }
 
-/// What cloth has to know of a body, if cloth can push it at all.
+/// Properties of a body for cloth, if cloth can push it at all.
 fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
     if !body.is_dynamic() || !body.is_enabled() {
         return None;

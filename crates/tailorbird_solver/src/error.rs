@@ -1,4 +1,4 @@
-//! What is wrong with a rest shape.
+//! Errors of a rest shape.
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_reflect::prelude::*;
@@ -63,7 +63,7 @@ pub enum ShapeError {
         "Cloth mesh indices[{at}] is {value}, must be below the number of vertices, {vertices}"
     )]
     IndexOutOfRange {
-        /// Where in the index list.
+        /// Position in the index list.
         at: usize,
         /// The index.
         value: u32,
@@ -93,7 +93,7 @@ pub enum ShapeError {
         "Cloth mesh has {count} triangles without area, the first is triangle {first}; triangles must have three distinct corners that are not in a line: dropped"
     )]
     DegenerateTriangles {
-        /// How many.
+        /// Number of triangles.
         count: usize,
         /// The first of them.
         first: usize,
@@ -103,7 +103,7 @@ pub enum ShapeError {
         "Cloth mesh has {count} triangles twice, the first is triangle {first}; each must be there once: dropped"
     )]
     DuplicateTriangles {
-        /// How many.
+        /// Number of triangles.
         count: usize,
         /// The first of them.
         first: usize,

@@ -20,8 +20,8 @@ pub enum ClothShape {
         size: Vec2,
         /// Columns and rows of particles, at least 2 × 2.
         resolution: UVec2,
-        /// Which point of the rectangle lies at the entity's origin, as fractions of the width from the left and of
-        /// the height from the top. (0, 0), the default, is the top left corner: particle (0, 0).
+        /// Point of the rectangle that lies at the entity's origin, as fractions of the width from the left and of the height from the top.
+        /// (0, 0), the default, is the top left corner: particle (0, 0).
         #[cfg_attr(feature = "serialize", serde(default))]
         origin: Vec2,
     },
@@ -42,14 +42,14 @@ pub enum ClothShape {
     },
 }
 
-/// Of a file that does not say.
+/// Default for a file without the field.
 #[cfg(feature = "serialize")]
 fn weld_distance() -> f32 {
     ClothShape::WELD_DISTANCE
 }
 
 impl ClothShape {
-    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
+    /// Distance \[m\] at which the vertices of a mesh are welded, unless another is set.
     pub const WELD_DISTANCE: f32 = 1e-5;
 
     /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner is at the origin.
@@ -61,7 +61,7 @@ impl ClothShape {
         }
     }
 
-    /// Triangles, given as vertices \[m\] and three indices for each triangle.
+    /// Triangles, by their vertices \[m\] and three indices for each triangle.
     pub fn mesh(positions: impl Into<Vec<Vec3>>, indices: impl Into<Vec<u32>>) -> Self {
         Self::Mesh {
             positions: positions.into(),
@@ -74,9 +74,9 @@ impl ClothShape {
     /// Checks the shape without building it.
     ///
     /// # Errors
-    /// The first thing that is wrong with it.
+    /// The first error that is found.
     pub fn check(&self) -> Result<(), ShapeError> {
-        /// The most particles of a grid: as many as f32 counts exactly.
+        /// Largest number of particles of a grid: f32 counts up to it exactly.
         const MOST_PARTICLES: u64 = 1 << 24;
         match self {
             Self::Grid {
@@ -142,7 +142,7 @@ impl ClothShape {
         }
     }
 
-    /// Positions of the particles at rest \[m\], by their given numbers; none where the shape is wrong.
+    /// Positions of the particles at rest \[m\], in their original order; none where the shape is wrong.
     pub fn rest_positions(&self) -> Vec<Vec3> {
         if self.check().is_err() {
             return Vec::new();
@@ -190,8 +190,8 @@ impl ClothShape {
         }
     }
 
-    /// 128 bits that stand for all bits of a shape and its scale: two that differ do not meet in practice, so that none has to be
-    /// kept to compare with.
+    /// Hash of a shape and its scale, of 128 bits: two that differ do not meet in practice, so that no shape has to be kept to compare
+    /// with.
     pub fn fingerprint(&self, scale: Vec3) -> u128 {
         let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
         halves[1].write_u8(1);
@@ -232,9 +232,9 @@ impl ClothShape {
     }
 }
 
-/// What is wrong with the vertices of a mesh.
+/// Checks the vertices of a mesh.
 pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), ShapeError> {
-    /// The farthest from the origin \[m\] in any direction: f32 counts in steps of 6 cm there.
+    /// Largest coordinate \[m\]: f32 counts in steps of 6 cm there.
     const FARTHEST: f32 = 1e6;
     for (vertex, value) in positions.enumerate() {
         if !value.is_finite() {

@@ -19,7 +19,7 @@ pub enum WindRegion {
     },
     /// In a sphere around the entity.
     Sphere {
-        /// \[m\]
+        /// Radius \[m\].
         radius: f32,
     },
 }
@@ -35,7 +35,7 @@ impl WindRegion {
     }
 }
 
-/// How strongly a wind blows that rises over `falloff` \[m\] at a depth inside its border: 0 to 1, without edges.
+/// Strength of a wind at a depth inside its border, over which it rises within `falloff` \[m\]: 0 to 1, smoothly.
 pub fn strength(depth: f32, falloff: f32) -> f32 {
     if falloff > 0.0 {
         let t = (depth / falloff).clamp(0.0, 1.0);

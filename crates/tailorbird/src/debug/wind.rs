@@ -1,4 +1,4 @@
-//! Where air moves, and how.
+//! Arrows of moving air.
 
 use bevy_color::{Alpha, Srgba, palettes::tailwind};
 use bevy_ecs::prelude::*;
@@ -17,7 +17,7 @@ const ARROWS: i32 = 5;
 /// Length of an arrow for 1 m/s \[m\].
 const PER_SPEED: f32 = 0.04;
 
-/// What is slower has no arrow [m/s].
+/// Speed below which air has no arrow [m/s].
 const STILL: f32 = 0.05;
 
 pub(super) fn draw(

@@ -36,7 +36,7 @@ fn kinds(has_holes: bool) -> [(&'static str, Texels); 3] {
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
 pub struct FabricLibrary {
-    /// Where there are textures.
+    /// Folder of the textures.
     folder: Option<String>,
     /// By the names of fabrics, and whether they have holes.
     textures: HashMap<(Cow<'static, str>, bool), Textures>,
@@ -73,7 +73,7 @@ impl FabricLibrary {
         }
     }
 
-    /// Whether all fabrics that cloths are made of look as they are to: none of their textures is still being loaded.
+    /// Returns whether all fabrics of cloths look as they are to: none of their textures is still being loaded.
     pub fn is_ready(&self) -> bool {
         let pending =
             |textures: &Textures| matches!(textures, Textures::Loading(_) | Textures::Shrinking(_));

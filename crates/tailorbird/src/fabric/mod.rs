@@ -159,7 +159,7 @@ impl ClothFabric {
         Self::ALL.into_iter().find(|fabric| fabric.name == name)
     }
 
-    /// How it moves and how it looks, for the entity of a cloth.
+    /// Material and look, for the entity of a cloth.
     pub fn bundle(self) -> impl Bundle {
         self.dyed(Color::WHITE)
     }
@@ -220,10 +220,9 @@ pub struct ClothLook {
     pub fabric: ClothFabric,
     /// What the fabric's own colour is multiplied with.
     pub dye: Color,
-    /// Whether it has the textures of its fabric.
+    /// True if it has the textures of its fabric.
     pub textured: bool,
-    /// How long a unit of the texture coordinates is on the cloth \[m\]. Where it is not given, that is the size of a grid, and 1 m for
-    /// any other mesh.
+    /// Length of a unit of the texture coordinates on the cloth \[m\]. By default the size of a grid, and 1 m for any other mesh.
     pub uv_size: Option<Vec2>,
 }
 

@@ -1,4 +1,4 @@
-//! How the vertices of a mesh follow from particles and normals.
+//! Vertices of a mesh, from particles and normals.
 
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};

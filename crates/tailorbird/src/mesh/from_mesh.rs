@@ -6,20 +6,20 @@ use tailorbird_cloth::{cloth::Cloth, error::ClothStatus};
 
 use super::MeshPins;
 
-/// Makes a cloth of the entity's `Mesh3d` or, where it has none, of all meshes below it, as soon as they are loaded: of a glTF
-/// scene, say. The [guide](super::garments) shows it.
+/// Makes a cloth of the entity's `Mesh3d` or, if it has none, of all meshes below it, as soon as they are loaded: of a glTF scene, say. The
+/// [guide](super::garments) shows it.
 ///
 /// The entity gets a [`Cloth`] of all triangles. Each mesh is replaced by a copy that the cloth moves, with the same UVs, colours,
-/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are
-/// kept in the main world, and may be compressed. Where the entities below are at that time counts, not where they are moved later.
+/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are kept in
+/// the main world, and may be compressed. The places of the entities below at that time count, not later ones.
 ///
-/// What moves the mesh by other means stays behind: of a skin and of morph targets the copy has nothing, and `SkinnedMesh` is taken off
-/// its entity, else each vertex would be moved twice. The log says so.
+/// Other means of moving the mesh are lost: the copy has neither a skin nor morph targets, and `SkinnedMesh` is taken off its entity,
+/// because each vertex would be moved twice. The log says so.
 ///
-/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made
-/// again, flat as the mesh is. Material, shading and pins that are given by place stay; pins that players made, and others given by
-/// index, go with the particles that they named. What is wrong with the assets is told by [`ClothStatus`], what
-/// was found in the triangles by [`Topology::report`](tailorbird_cloth::topology::Topology::report).
+/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made again,
+/// flat as the mesh is. Material, shading and pins by place stay; pins that players made, and other pins by index, go with the particles
+/// that they named. Errors in the assets are told by [`ClothStatus`], findings in the triangles by
+/// [`Topology::report`](tailorbird_cloth::topology::Topology::report).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Default)]
 #[require(ClothStatus)]
@@ -29,7 +29,7 @@ pub struct ClothFromMesh {
     /// Which vertices are pinned; a pin beside those of [`ClothPins`](tailorbird_cloth::pins::ClothPins). What is painted is kept in
     /// [`ClothWeights`](tailorbird_cloth::weights::ClothWeights).
     pub pins: MeshPins,
-    /// Which of the meshes below the entity it is made of.
+    /// Meshes below the entity that become the cloth.
     pub parts: MeshParts,
     /// Where its warp and weft run.
     pub threads: MeshThreads,

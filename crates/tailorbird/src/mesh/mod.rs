@@ -46,8 +46,8 @@ use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
 
-/// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
-/// entities have the same mesh. The cloths are simulated all the same, but where
+/// Treatment of cloth meshes that are visible to no camera and no light with shadows. Visibility is that of the cloth's own mesh entities,
+/// whatever other entities have the same mesh. The cloths are simulated all the same, unless
 /// [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
@@ -65,24 +65,22 @@ pub enum ClothUnseen {
 /// Makes the `StandardMaterial` of cloths two-sided as well: a cloth has a back.
 #[derive(Default)]
 pub struct ClothMeshPlugin {
-    /// What [`ClothMeshSettings`] starts with.
+    /// Initial [`ClothMeshSettings`].
     pub settings: ClothMeshSettings,
 }
 
-/// How meshes are written.
+/// Settings of the writing of meshes.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothMeshSettings {
     /// Draws cloth between the last two steps, where the current frame is. For a simulation in a schedule with a fixed
     /// time step; without it motion would stutter wherever steps and frames do not coincide.
     pub interpolate: bool,
-    /// Where the vertices go.
+    /// Destination of the vertices.
     pub write: ClothMeshWrite,
-    /// What happens to meshes that no camera and no light with shadows sees.
+    /// Treatment of meshes that are visible to no camera and no light with shadows.
     pub unseen: ClothUnseen,
-    /// Whether vertices carry their place in the frame before, as
-    /// [`ATTRIBUTE_PREVIOUS_POSITION`].
-    /// `ClothMotionVectorsPlugin` sets it.
+    /// True if vertices carry their position in the frame before, as [`ATTRIBUTE_PREVIOUS_POSITION`]. `ClothMotionVectorsPlugin` sets it.
     pub motion_vectors: bool,
 }
 
@@ -97,13 +95,13 @@ impl Default for ClothMeshSettings {
     }
 }
 
-/// Where the vertices of cloths go in each frame.
+/// Destination of the vertices of cloths in each frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum ClothMeshWrite {
-    /// To where the renderer keeps them. The mesh asset has the cloth as it was when its mesh was built.
+    /// The renderer's own buffers. The mesh asset has the cloth as it was when its mesh was built.
     ///
-    /// Where there is no renderer, or it keeps a mesh in another form, the asset is written.
+    /// Without a renderer, or if it keeps a mesh in another form, the asset is written.
     #[default]
     Slab,
     /// To the mesh asset, for those who read it. It costs several times as much.

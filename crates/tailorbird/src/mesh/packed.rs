@@ -19,26 +19,26 @@ pub(super) struct Packed {
     pub words: Vec<f32>,
     /// Numbers of a vertex.
     pub stride: usize,
-    /// Where the position, the normal and the tangent, if there is one, start in a vertex.
+    /// Starts of the position, the normal and the tangent, if there is one, in a vertex.
     pub position: usize,
     pub normal: usize,
     pub tangent: Option<usize>,
     /// The positions of the frame before, where the mesh has a place for them.
     previous: Option<Previous>,
-    /// Whether these are all attributes, in the order that the renderer has them in.
+    /// True if these are all attributes, in the order of the renderer.
     pub complete: bool,
     /// Rises when the other attributes change.
     pub version: u32,
     attributes: Vec<MeshVertexAttribute>,
 }
 
-/// Where vertices were drawn.
+/// Positions at which vertices were drawn.
 struct Previous {
-    /// Where that position starts in a vertex.
+    /// Start of that position in a vertex.
     place: usize,
     /// None where they were not drawn in the frame before.
     positions: Vec<f32>,
-    /// Whether any was elsewhere.
+    /// True if any was elsewhere.
     moved: bool,
 }
 
@@ -104,7 +104,7 @@ impl Packed {
         })
     }
 
-    /// Whether a mesh still has these attributes, and as many vertices.
+    /// Returns whether a mesh still has these attributes, and as many vertices.
     pub fn is_of(&self, mesh: &Mesh) -> bool {
         let same = attributes(mesh).map(|(attribute, values)| (attribute.id, values.len()));
         let count = self.words.len() / self.stride;
@@ -135,7 +135,7 @@ impl Packed {
         }
     }
 
-    /// Whether vertices were elsewhere in the frame before, which is to be taken back when they stay.
+    /// Returns whether vertices were elsewhere in the frame before, which is to be taken back when they stay.
     pub fn moved(&self) -> bool {
         self.previous
             .as_ref()

@@ -28,20 +28,20 @@ pub(super) struct MeshSource {
 }
 
 impl MeshSource {
-    /// Whether this is the same mesh of the same entity.
+    /// Returns whether this is the same mesh of the same entity.
     pub fn is_same(&self, other: &Self) -> bool {
         self.entity == other.entity && self.mesh == other.mesh
     }
 }
 
-/// What came of the search.
+/// Result of the search.
 pub(super) enum Found {
     /// Something is still loading, or is not there yet.
     Nothing,
     Meshes(Vec<MeshSource>),
 }
 
-/// What is needed to find meshes.
+/// Parameters of a search for meshes.
 #[derive(SystemParam)]
 pub(super) struct Finder<'w, 's> {
     nodes: Query<
@@ -179,7 +179,7 @@ fn source_of(mesh: &Mesh3d, part: Option<&ClothMeshOf>) -> Handle<Mesh> {
 /// Appends the triangles of a mesh to those of the cloth.
 ///
 /// # Errors
-/// What is wrong with the mesh.
+/// The error in the mesh.
 pub(super) fn append(
     mesh: &Mesh,
     to_cloth: Option<Affine3A>,

@@ -20,10 +20,10 @@ pub(super) fn unusable(reason: impl Into<String>) -> ClothErrorKind {
     }
 }
 
-/// The places of the vertices, in the space of the mesh \[m\].
+/// Positions of the vertices, in the space of the mesh \[m\].
 ///
 /// # Errors
-/// Where there are none, or none that can be read.
+/// An error if there are none, or none that can be read.
 pub(super) fn positions(mesh: &Mesh) -> Result<Cow<'_, [[f32; 3]]>, ClothErrorKind> {
     match mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION) {
         Ok(Some(Values::Float32x3(places))) => Ok(Cow::Borrowed(places)),
@@ -82,10 +82,10 @@ pub(super) fn channel(values: &Values, channel: usize) -> Option<Vec<f32>> {
     }
 }
 
-/// A copy of a mesh without compression, without what a skin or morph targets need, and without these attributes.
+/// A copy of a mesh without compression, without the attributes of skins and morph targets, and without these attributes.
 ///
 /// # Errors
-/// Where there are no positions that can be read.
+/// An error if there are no positions that can be read.
 pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh, ClothErrorKind> {
     let mut copy = Mesh::new(mesh.primitive_topology(), mesh.asset_usage);
     copy.enable_raytracing = mesh.enable_raytracing;

@@ -1,4 +1,4 @@
-//! Where vertices were in the frame before.
+//! Positions of vertices in the frame before.
 
 use bevy_asset::Assets;
 use bevy_ecs::prelude::*;

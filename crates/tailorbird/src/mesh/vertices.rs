@@ -15,7 +15,7 @@ pub(super) struct Vertices {
     source: Option<Mesh>,
     /// For each vertex the vertex of the source.
     source_vertex: Vec<u32>,
-    /// Where the vertices and triangles of the source start in the cloth's shape.
+    /// Index of the source's first vertex and triangle in the cloth's shape.
     first_vertex: usize,
     first_triangle: usize,
     /// For each vertex its normal.
@@ -58,7 +58,7 @@ impl Vertices {
         }
     }
 
-    /// Those of the meshes that a shape was made of; `None` where they are not those of the shape (any more).
+    /// Vertices of the meshes that a shape was made of; `None` if they are not those of the shape (any more).
     pub fn of_meshes<'a>(
         sources: &'a [MeshSource],
         shape: &ClothShape,
@@ -116,7 +116,7 @@ impl Vertices {
         self.finish(topology)
     }
 
-    /// Which of the mesh's own triangles these are, numbered as in the shape.
+    /// Index among the mesh's own triangles of a triangle of the shape.
     fn own(&self, triangle: u32) -> Option<usize> {
         let own = (triangle as usize).checked_sub(self.first_triangle)?;
         (own < self.indices.len() / 3).then_some(own)
@@ -131,7 +131,7 @@ impl Vertices {
         }
     }
 
-    /// Which triangles are the backs of others.
+    /// Triangles that are the backs of others.
     fn back_triangles(&self, topology: &Topology) -> Vec<usize> {
         let backs = topology.copied_triangles().iter().filter(|copy| copy.back);
         backs.filter_map(|copy| self.own(copy.source)).collect()

@@ -26,11 +26,11 @@ use super::{
     drawn::Drawn,
     follow::{PIECE, share},
     packed::Packed,
-    slab::{VertexUploads, Vertices},
+    slab::{VertexUpload, VertexUploads},
 };
 use crate::drawn::ClothDrawnHolds;
 
-/// Whether meshes are written as assets: then they are before their changes are told.
+/// Returns whether meshes are written as assets: then they are before their changes are told.
 pub(super) fn writes_assets(
     settings: Res<ClothMeshSettings>,
     uploads: Option<Res<VertexUploads>>,
@@ -212,7 +212,7 @@ fn moved(aabb: Aabb, by: Affine3A) -> Aabb {
 }
 
 impl ClothMesh {
-    /// Whether it is to be built anew.
+    /// Returns whether it is to be built anew.
     fn is_stale(&self, topology: &ClothTopology, normals: &ClothNormals) -> bool {
         self.revision != topology.revision || normals.shading() != self.shading
     }
@@ -283,7 +283,7 @@ pub(super) fn write_cloth_mesh(
                 });
                 let next = next.map_or_else(|| packed.words.clone(), |spent| spent.words);
                 let words = std::mem::replace(&mut packed.words, next);
-                let vertices = Vertices {
+                let vertices = VertexUpload {
                     words,
                     stride,
                     version,

@@ -1,4 +1,4 @@
-//! What each shape costs that a sheet lies on.
+//! Cost of each shape that a sheet lies on.
 
 use std::{
     f32::consts::{FRAC_PI_2, PI, TAU},

@@ -1,4 +1,4 @@
-//! What is measured, and the apps for it.
+//! Scenes to measure, and the apps for them.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -20,7 +20,7 @@ const FLAGS: (u32, u32) = (1000, 32);
 /// Of the chain solver; `None` is as many as it chooses itself.
 const SUBSTEPS: [Option<u32>; 5] = [None, Some(2), Some(4), Some(8), Some(16)];
 
-/// What happens.
+/// Scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     Hang,

@@ -1,4 +1,4 @@
-//! What it costs that a game has systems within a substep.
+//! Cost of a game's systems within a substep.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct Record {
     /// Particles along a side.
     size: u32,
     ms: f64,
-    /// How many times as long as without a system of a game.
+    /// Ratio to the time without a system of a game.
     ratio: f64,
 }
 

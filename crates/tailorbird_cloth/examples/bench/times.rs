@@ -1,4 +1,4 @@
-//! How long the kernels take.
+//! Times of the kernels.
 
 use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
@@ -20,7 +20,7 @@ use tailorbird_solver::{
         sphere::{self, MovingSphere},
         tether::{self, Straight, Tether},
         verlet::Verlet,
-        viscosity::{Beside, Motion},
+        viscosity::{Beside, SheetMotion},
     },
     numbers::Numbers,
     points::Points,
@@ -33,11 +33,11 @@ use tailorbird_solver::{
 /// The time of one kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KernelTime {
-    /// What it does.
+    /// Name of the kernel.
     pub name: &'static str,
     /// Time for each particle \[ns\]: the best of several.
     pub ns_per_particle: f64,
-    /// How many constraints it holds for each particle; 0 for what holds none.
+    /// Constraints for each particle; 0 for a kernel without.
     pub constraints_per_particle: f64,
 }
 
@@ -82,7 +82,7 @@ pub fn measure(size: u32, instruction_set: InstructionSet) -> Vec<KernelTime> {
     times.all
 }
 
-/// What was measured.
+/// Measured times.
 struct Times {
     particles: usize,
     all: Vec<KernelTime>,
@@ -212,7 +212,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             overlaps: &std::sync::atomic::AtomicBool::new(false),
         },
     };
-    let motion = Motion {
+    let motion = SheetMotion {
         sheet: Sheet {
             columns: n,
             rows: n,

@@ -16,7 +16,7 @@ use super::{
 #[derive(Parser, Clone, Debug)]
 #[command(name = "headless", version)]
 pub struct Args {
-    /// What happens.
+    /// Scene.
     #[arg(long, value_enum, default_value_t = Scene::Hang)]
     pub scene: Scene,
 
@@ -24,15 +24,15 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = values::size, allow_hyphen_values = true)]
     pub size: u32,
 
-    /// How the sheet is described.
+    /// Description of the sheet.
     #[arg(long, value_enum, default_value_t = Mesh::Grid)]
     pub mesh: Mesh,
 
-    /// What is pinned: the corners (0, 0) and (0, N−1), or row 0 [default: what the scene has].
+    /// Pinned particles: the corners (0, 0) and (0, N−1), or row 0 [default: that of the scene].
     #[arg(long, value_enum)]
     pub pins: Option<Pins>,
 
-    /// How many steps to simulate [default: 300, or as long as the scene lasts].
+    /// Number of steps to simulate [default: 300, or as long as the scene lasts].
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub steps: Option<u32>,
 
@@ -49,11 +49,11 @@ pub struct Args {
           value_parser = values::iterations, allow_hyphen_values = true)]
     pub iterations: u32,
 
-    /// How the constraints are solved.
+    /// Method by which the constraints are solved.
     #[arg(long, value_enum, default_value_t = Solver::Chains)]
     pub solver: Solver,
 
-    /// What the sheet is made of; the values below count all the same [default: cotton that does not stretch].
+    /// Material of the sheet; the values below count all the same [default: cotton that does not stretch].
     #[arg(long, value_name = "NAME", value_parser = material, allow_hyphen_values = true)]
     pub material: Option<ClothMaterial>,
 
@@ -97,7 +97,7 @@ pub struct Args {
     #[arg(long, value_name = "R", value_parser = values::positive, allow_hyphen_values = true)]
     pub density: Option<f32>,
 
-    /// What the scenes ask for.
+    /// Demands of the scenes.
     #[command(flatten)]
     pub demands: Demands,
 
@@ -127,18 +127,18 @@ pub struct Args {
     pub dump_every: Option<u32>,
 }
 
-/// How the sheet is described.
+/// Description of the sheet.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mesh {
-    /// As columns and rows.
+    /// Columns and rows.
     Grid,
-    /// As triangles: the same particles in random order, cells cut along random diagonals, triangles in random order.
+    /// Triangles: the same particles in random order, cells cut along random diagonals, triangles in random order.
     Shuffled,
-    /// As triangles, in random order, whose inner corners lie irregularly.
+    /// Triangles, in random order, whose inner corners lie irregularly.
     Irregular,
 }
 
-/// Which particles are held.
+/// Particles that are held.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pins {
     /// (0, 0) and (0, N−1).
@@ -151,7 +151,7 @@ pub enum Pins {
     None,
 }
 
-/// How the constraints are solved.
+/// Method by which the constraints are solved.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
     /// One after the other, in batches that share no particle.
@@ -217,10 +217,10 @@ impl Args {
         })
     }
 
-    /// What the sheet is made of.
+    /// Material of the sheet.
     ///
-    /// The springs of the classic scheme are rigid, as they always were; shear and bending that are as soft as a fabric's are
-    /// what lets the chain solver's sheet fold.
+    /// The springs of the classic scheme are rigid, as they always were; the chain solver's sheet folds because its shear and bending are
+    /// as soft as a fabric's.
     pub fn material(&self) -> ClothMaterial {
         let rigid = ClothMaterial {
             warp_compliance: 0.0,
@@ -247,7 +247,7 @@ impl Args {
         }
     }
 
-    /// How many steps to simulate.
+    /// Number of steps to simulate.
     pub fn steps(&self) -> u32 {
         let seconds = self.scene.seconds(&self.demands);
         let of_scene = seconds.map_or(300, |seconds| (seconds * self.hz).round() as u32);

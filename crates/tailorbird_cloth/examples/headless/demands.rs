@@ -25,7 +25,7 @@ use super::values;
 /// Width and height of the sheet [m].
 pub const SIZE: f32 = 2.0;
 
-/// What the scenes ask for.
+/// Demands of the scenes.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Demands {
     /// How much farther apart than the sheet is long the posts stand, as a part of 2 m.
@@ -44,7 +44,7 @@ pub struct Demands {
     #[arg(long, value_name = "V", default_value_t = 20.0, value_parser = values::positive, allow_hyphen_values = true)]
     pub speed: f32,
 
-    /// What is put into the cloth.
+    /// Body that is put into the cloth.
     #[arg(long, value_enum, default_value_t = Body::Ball)]
     pub body: Body,
 
@@ -52,21 +52,21 @@ pub struct Demands {
     #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
     pub way: f32,
 
-    /// What holds it there.
+    /// Holder of the curtain there.
     #[arg(long, value_enum, default_value_t = Held::Attached)]
     pub held: Held,
 }
 
-/// What holds a curtain that is moved.
+/// Holder of a curtain that is moved.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// It is attached to an entity.
+    /// An entity that the curtain is attached to.
     Attached,
-    /// It is the child of an entity, and pinned.
+    /// The parent of the curtain, which is pinned.
     Child,
 }
 
-/// What happens.
+/// Scene.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     /// Swings down from two corners.
@@ -105,7 +105,7 @@ pub enum Scene {
     Grow,
 }
 
-/// What is put into a cloth.
+/// Body that is put into a cloth.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
     /// A ball with a radius of 0.3 m.
@@ -140,7 +140,7 @@ impl Body {
 }
 
 impl Scene {
-    /// How long the scene lasts [s]; none where it goes on.
+    /// Duration of the scene [s]; none if it goes on.
     pub fn seconds(self, demands: &Demands) -> Option<f64> {
         Some(match self {
             Self::Posts => 5.0,
@@ -174,7 +174,7 @@ impl Scene {
         }
     }
 
-    /// Whether the sheet starts upright, and not lying at a height of 1 m.
+    /// Returns whether the sheet starts upright, and not lying at a height of 1 m.
     pub fn is_upright(self) -> bool {
         matches!(
             self,

@@ -25,7 +25,7 @@ pub struct Sheet {
     pub app: App,
     /// The sheet.
     pub entity: Entity,
-    /// What was seen in the steps so far.
+    /// Largest values in the steps so far.
     pub peaks: Peaks,
     play: Play,
     step: u32,
@@ -110,7 +110,7 @@ impl Sheet {
         self.app.world().resource::<ClothStepTime>().total
     }
 
-    /// What is seen after a step.
+    /// Values after a step.
     fn seen(&self) -> Seen {
         let gravity = self.app.world().resource::<ClothSettings>().gravity;
         let gravity = self.get::<ClothFrame>().vector_to_frame(gravity);
@@ -133,14 +133,14 @@ impl Sheet {
         resolution.map_or(1, |resolution| resolution.x as usize)
     }
 
-    /// Where the particles are in the world [m].
+    /// Positions of the particles in the world [m].
     pub fn world_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
         let frame = self.get::<ClothFrame>();
         let particles = self.get::<ClothParticles>();
         particles.positions().map(|p| frame.to_world(p))
     }
 
-    /// What the simulation finds wrong with the sheet.
+    /// Errors that the simulation finds in the sheet.
     pub fn errors(&self) -> Vec<String> {
         let status = self.get::<ClothStatus>();
         status.errors().map(ToString::to_string).collect()

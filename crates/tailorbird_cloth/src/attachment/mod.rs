@@ -38,21 +38,21 @@
 //! ```
 //!
 //! An attachment holds **rigidly** unless it has a compliance or a break force: then its particles are kinematic, as those of
-//! pins are. They move from where they are at the start of a step to where the entity is at its end, evenly over the
-//! substeps: along a straight line where it moves, along an arc where it turns. Where it does not move they have no
-//! velocity. Where all that holds a cloth [hops](crate::sampling#hops), or moved while cloth did not simulate, the whole cloth is carried
-//! along, with the motion that it has ([`ClothTeleported`](crate::inertia::ClothTeleported) tells of hops). A particle that is not where it
-//! is held, as where one of two hands hops, goes there at up to 30 m/s.
+//! pins are. They move from their positions at the start of a step to the entity's at its end, evenly over the
+//! substeps: along a straight line if it moves, along an arc if it turns. If it does not move they have no
+//! velocity. If all holders of a cloth [hop](crate::sampling#hops), or moved while cloth did not simulate, the whole cloth is carried
+//! along, with the motion that it has ([`ClothTeleported`](crate::inertia::ClothTeleported) tells of hops). A particle that is not at the
+//! point that holds it, for example if one of two hands hops, goes there at up to 30 m/s.
 //!
-//! One with a **compliance** α is a spring of zero length from each particle to its point: they carry F for a gap of α F together,
-//! however many particles that are. Solved together with the lines, so that it adds no stretch. One with a **break
-//! force** is the same, as stiff as it can be measured: at the break force it gives way by [`ClothAttachment::GIVE`].
+//! An attachment with a **compliance** α is a spring of zero length from each particle to its point: they carry F for a gap of α F
+//! together, whatever the number of particles. It is solved together with the lines, so that it adds no stretch. An attachment with a
+//! **break force** is a spring as stiff as it can be measured: at the break force it gives way by [`ClothAttachment::GIVE`].
 //!
-//! What it carries is in [`AttachmentForce`], a mean over the step. Where that exceeds the break force, and where the entity that
+//! [`AttachmentForce`] has the force that it carries, a mean over the step. If the force exceeds the break force, or the entity that
 //! holds it is despawned, the attachment is despawned and [`AttachmentBroken`] triggered for the cloth; the particles fly
 //! on with the velocity that they have. A cloth takes its attachments with it when it is despawned.
 //!
-//! Where several things hold a particle, a pin ([`ClothPins`](crate::pins::ClothPins)) counts before an attachment, a rigid
+//! If several holders have the same particle, a pin ([`ClothPins`](crate::pins::ClothPins)) counts before an attachment, a rigid
 //! attachment before a motion constraint and before the player's hand, a later attachment of [`ClothAttachments`] before an
 //! earlier one. Springs add up.
 
@@ -86,27 +86,27 @@ use crate::{
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 #[require(AttachmentState, AttachmentForce, ClothStatus)]
 pub struct ClothAttachment {
-    /// What is held. A selection that is wrong is reported and left out.
+    /// Selections of particles. A wrong selection is reported and left out.
     pub selections: Vec<PinSelection>,
-    /// Where it is held.
+    /// Points of the entity at which the particles are held.
     pub offset: AttachmentOffset,
-    /// How far the whole gives way to a force [m/N]; 0, the default, is rigid.
+    /// Compliance of the whole attachment [m/N]; 0, the default, is rigid.
     pub compliance: f32,
-    /// What it carries at most, as a mean over a step \[N\]. `None`, the default: anything.
+    /// Largest force that it carries, as a mean over a step \[N\]. `None`, the default: any force.
     pub break_force: Option<f32>,
 }
 
-/// Where an attachment holds its particles.
+/// Points of an entity at which an attachment holds its particles.
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
 pub enum AttachmentOffset {
-    /// Where they are, relative to the entity, when they are attached (at rest, for a new cloth).
+    /// Positions of the particles, relative to the entity, when they are attached (at rest, for a new cloth).
     #[default]
     Keep,
-    /// At points of the entity's own space \[m\]: one for each particle, in the order of the selections, or one for all. They
-    /// move there within one step, evenly over the substeps; those that are further than half a metre at 30 m/s.
+    /// Points of the entity's own space \[m\]: one for each particle, in the order of the selections, or one for all. Particles
+    /// move there within one step, evenly over the substeps; particles further away than half a metre at 30 m/s.
     Points(Vec<Vec3>),
 }
 
@@ -139,8 +139,8 @@ pub struct AttachedTo(pub Entity);
 #[require(SampledMotion)]
 pub struct Attachments(Vec<Entity>);
 
-/// With which force the cloth pulls at what holds an attachment, where that has a compliance or a break force; 0 for a rigid
-/// one, whose part in [`ClothPinForces`](crate::reaction::ClothPinForces) is not told apart.
+/// Force of the cloth on the target of an attachment that has a compliance or a break force; 0 for a rigid one, whose part in
+/// [`ClothPinForces`](crate::reaction::ClothPinForces) is not told apart.
 ///
 /// Written by [`break_attachments`] alone.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -150,33 +150,33 @@ pub struct AttachmentForce {
     pub force: Vec3,
 }
 
-/// An attachment is gone: it was pulled too hard, or what held it was despawned. Triggered for the cloth.
+/// Event for the end of an attachment: it was pulled too hard, or its target was despawned. Triggered for the cloth.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Reflect)]
 pub struct AttachmentBroken {
     /// The cloth.
     pub entity: Entity,
     /// The attachment; it is despawned after its observers have run.
     pub attachment: Entity,
-    /// What held it. May be despawned: see `reason`.
+    /// Entity that held the particles. May be despawned: see `reason`.
     pub target: Entity,
-    /// What it carried in the last step, in world axes \[N\]; 0 for one that was rigid.
+    /// Force that the attachment carried in the last step, in world axes \[N\]; 0 for a rigid one.
     pub force: Vec3,
-    /// Why.
+    /// Reason.
     pub reason: BreakReason,
 }
 
-/// Why an attachment broke.
+/// Reason why an attachment broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
 pub enum BreakReason {
-    /// It carried more than [`ClothAttachment::break_force`].
+    /// The attachment carried more than [`ClothAttachment::break_force`].
     Force,
     /// The entity that held it was despawned, or [`AttachedTo`] was removed.
     TargetGone,
 }
 
 impl ClothAttachment {
-    /// By how much an attachment without compliance gives way at its break force \[m\].
+    /// Gap of an attachment without compliance at its break force \[m\].
     pub const GIVE: f32 = 2e-5;
 
     /// Holds particles rigidly where they are.
@@ -210,13 +210,13 @@ impl ClothAttachment {
         Self::new(PinSelection::Within { center, radius })
     }
 
-    /// At points of the entity's own space \[m\]: one for each particle, or one for all.
+    /// Sets points of the entity's own space \[m\]: one for each particle, or one for all.
     pub fn with_points(self, points: impl IntoIterator<Item = Vec3>) -> Self {
         let offset = AttachmentOffset::Points(points.into_iter().collect());
         Self { offset, ..self }
     }
 
-    /// With this compliance [m/N].
+    /// Sets the compliance [m/N].
     pub fn with_compliance(self, compliance: f32) -> Self {
         Self { compliance, ..self }
     }
@@ -229,12 +229,12 @@ impl ClothAttachment {
         }
     }
 
-    /// With the entity that holds it, as a bundle.
+    /// Bundle of the attachment and the entity that holds it.
     pub fn to(self, target: Entity) -> (Self, AttachedTo) {
         (self, AttachedTo(target))
     }
 
-    /// What is wrong with the values. What is wrong with the selections depends on the cloth.
+    /// Errors in the values. Errors in the selections depend on the cloth.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let compliance = ClothErrorKind::number(
             "ClothAttachment.compliance",

@@ -24,8 +24,8 @@ use crate::{
 
 /// Reads what holds the attachments, and where it is at the end of this step.
 ///
-/// What is wrong with an attachment is reported for its entity, and what was valid last stays in force: the particles stay
-/// held where the target was.
+/// An error of an attachment is reported for its entity, and its last valid state stays in force: the particles stay held where the target
+/// was.
 pub fn prepare_attachments(
     step: Res<ClothStep>,
     poses: SampledPoses,
@@ -152,9 +152,9 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let way = start.way_to(&end);
+            let way = start.displacement_to(&end);
             if rest.is_unseen() && step.running() {
-                state.velocity = began.way_to(&end) / step.world_seconds();
+                state.velocity = began.displacement_to(&end) / step.world_seconds();
             }
             let excess = if unfelt || way == Vec3::ZERO && teleport {
                 Vec3::ZERO
@@ -186,7 +186,7 @@ pub fn prepare_attachments(
                     && let Ok((.., mut state, _)) =
                         attachments.get_mut(Entity::from_bits(body.attachment))
                 {
-                    let way = body.start.way_to(&body.end);
+                    let way = body.start.displacement_to(&body.end);
                     state.velocity = way / step.world_seconds();
                 }
             }

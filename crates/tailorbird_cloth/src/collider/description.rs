@@ -22,7 +22,7 @@ struct ColliderDescription {
     margin: f32,
 }
 
-/// Of a file that does not say.
+/// Default for a file without the field.
 fn friction() -> f32 {
     ClothCollider::FRICTION
 }

@@ -10,8 +10,8 @@ use crate::error::ClothErrorKind;
 
 /// A surface of triangles. A clone shares them.
 ///
-/// One that is closed, with all triangles counter-clockwise seen from outside, is solid: what gets inside is pushed out.
-/// Any other is a sheet, which keeps everything on the side where it is.
+/// A closed surface, with all triangles counter-clockwise seen from outside, is solid: particles that get inside are pushed out. Any other
+/// is a sheet, which keeps particles on the side where they are.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -125,7 +125,7 @@ impl ClothCollider {
         ColliderShape::Sphere { radius }.into()
     }
 
-    /// All within `radius` \[m\] of a line of `length` \[m\] along y: `length + 2 · radius` from end to end.
+    /// A capsule: all points within `radius` \[m\] of a line of `length` \[m\] along y: `length + 2 · radius` from end to end.
     pub fn capsule(radius: f32, length: f32) -> Self {
         ColliderShape::Capsule {
             radius,
@@ -144,7 +144,7 @@ impl ClothCollider {
         .into()
     }
 
-    /// Everything below the entity's x-z plane.
+    /// A half-space: everything below the entity's x-z plane.
     pub fn half_space() -> Self {
         ColliderShape::HalfSpace.into()
     }
@@ -167,7 +167,7 @@ impl ClothCollider {
     /// The convex hull of points \[m\].
     ///
     /// # Errors
-    /// As [`ConvexHull::new`].
+    /// The errors of [`ConvexHull::new`].
     pub fn convex_hull(points: &[Vec3]) -> Result<Self, ClothErrorKind> {
         Ok(ColliderShape::ConvexHull(ConvexHull::new(points)?).into())
     }
@@ -175,7 +175,7 @@ impl ClothCollider {
     /// A mesh of triangles between these positions \[m\].
     ///
     /// # Errors
-    /// As [`TriMesh::new`].
+    /// The errors of [`TriMesh::new`].
     pub fn trimesh(
         positions: impl Into<Vec<Vec3>>,
         triangles: impl Into<Vec<[u32; 3]>>,
@@ -186,7 +186,7 @@ impl ClothCollider {
     /// Terrain: see [`HeightField::new`].
     ///
     /// # Errors
-    /// As [`HeightField::new`].
+    /// The errors of [`HeightField::new`].
     pub fn height_field(
         heights: Vec<f32>,
         columns: u32,
@@ -198,30 +198,30 @@ impl ClothCollider {
     /// Several shapes that move as one.
     ///
     /// # Errors
-    /// As [`Compound::new`].
+    /// The errors of [`Compound::new`].
     pub fn compound(
         parts: impl IntoIterator<Item = (Isometry3d, ColliderShape)>,
     ) -> Result<Self, ClothErrorKind> {
         Ok(ColliderShape::Compound(Compound::new(parts)?).into())
     }
 
-    /// With this Coulomb friction [-].
+    /// Sets the Coulomb friction [-].
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }
 
-    /// With this margin \[m\].
+    /// Sets the margin \[m\].
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
     }
 
-    /// What is wrong with this collider.
+    /// Errors of this collider.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         check(&self.shape, self.friction, self.margin)
     }
 }
 
-/// What is wrong with a collider.
+/// Errors of a collider.
 fn check(shape: &ColliderShape, friction: f32, margin: f32) -> Vec<ClothErrorKind> {
     let mut errors = shape.errors();
     let not_negative = |v: f32| v >= 0.0 && v.is_finite();

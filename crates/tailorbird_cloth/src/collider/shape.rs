@@ -15,26 +15,26 @@ use crate::error::ClothErrorKind;
 pub enum ColliderShape {
     /// A ball. Where the entity is scaled, the largest factor counts, as for all round shapes.
     Sphere {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
     },
-    /// All within a radius of a line along y.
+    /// A capsule: all points within a radius of a line along y.
     Capsule {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
         /// Half of the line's length \[m\].
         half_length: f32,
     },
     /// The hull of two balls on the y axis.
     TaperedCapsule {
-        /// Of the ball at −`half_length` \[m\].
+        /// Radius of the ball at −`half_length` \[m\].
         bottom_radius: f32,
-        /// Of the ball at +`half_length` \[m\].
+        /// Radius of the ball at +`half_length` \[m\].
         top_radius: f32,
-        /// Half of the way between their centres \[m\].
+        /// Half of the distance between their centres \[m\].
         half_length: f32,
     },
-    /// Everything below the entity's x-z plane: the ground.
+    /// A half-space, the ground: everything below the entity's x-z plane.
     HalfSpace,
     /// A box. Scale counts along each of its axes.
     Cuboid {
@@ -43,9 +43,9 @@ pub enum ColliderShape {
     },
     /// A cylinder along y.
     Cylinder {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
-        /// \[m\].
+        /// Half of its height \[m\].
         half_height: f32,
     },
     /// The convex hull of points. Scale counts along each axis.
@@ -101,7 +101,7 @@ impl Compound {
 }
 
 impl ColliderShape {
-    /// What is wrong with its measures.
+    /// Errors in its measures.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let positive = |field: &str, value: f32| {
             let ok = |v: f32| v > 0.0 && v.is_finite();

@@ -73,8 +73,8 @@ impl ClothColliders {
     }
 }
 
-/// How a part that is turned like this lies in a whole of this scale, and its scale along its own axes. Exact where the axes of
-/// the two agree, or the scale is the same along all; no shape here can be sheared.
+/// Rotation and scale of a part, with this rotation, in a whole of this scale. Exact if the axes of the two agree, or the scale is the same
+/// along all; no shape here can be sheared.
 fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
     if rotation == Quat::IDENTITY {
         return (rotation, scale);
@@ -91,9 +91,9 @@ fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
     (rotation, side * Vec3::from(sizes))
 }
 
-/// Reads where the colliders are at the start and at the end of the step, and takes those of [`ExternalColliders`].
+/// Reads the poses of colliders at the start and at the end of the step, and takes those of [`ExternalColliders`].
 ///
-/// One that is wrong, or whose transform is not finite, is reported and left out.
+/// A wrong collider, or one whose transform is not finite, is reported and left out.
 pub fn snapshot_colliders(
     step: Res<ClothStep>,
     poses: SampledPoses,
@@ -162,7 +162,7 @@ pub fn snapshot_colliders(
         .sort_unstable_by_key(|collider| collider.id);
     list.solids.forget(step.steps());
     let ClothColliders { list, bodies, .. } = list;
-    (list.boxes).extend(list.colliders.iter().map(MovingCollider::around));
+    (list.boxes).extend(list.colliders.iter().map(MovingCollider::swept_box));
     list.bodies.extend(bodies.iter().map(|body| Body {
         inv_mass: body.inv_mass,
         inv_inertia: body.inv_inertia,
@@ -226,7 +226,7 @@ fn take_external(
     colliders.clear();
 }
 
-/// What is wrong with a collider from elsewhere.
+/// Errors of a collider from elsewhere.
 fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
     let places = [collider.start, collider.end].into_iter().filter_map(|at| {
         let finite = at.translation.is_finite() && at.rotation.is_finite();
@@ -240,7 +240,7 @@ fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErr
         .chain(collider.body.iter().flat_map(body_errors))
 }
 
-/// What is wrong with a body.
+/// Errors of a body.
 fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
     let error = |field: &str, value: String, allowed: &str| ClothErrorKind::Body {
         field: field.into(),

@@ -23,7 +23,7 @@ struct Kept {
 }
 
 impl Solids {
-    /// What was not used in this step is forgotten.
+    /// Forgets all shapes that were not used in this step.
     pub fn forget(&mut self, step: u64) {
         self.0.retain(|_, kept| kept.used == step);
     }

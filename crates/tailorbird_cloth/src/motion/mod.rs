@@ -64,7 +64,7 @@ use crate::{error::ClothErrorKind, sampling::HopDetector};
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub enum PerParticle {
-    /// The same for all.
+    /// One value for all particles.
     All(
         #[cfg_attr(
             feature = "serialize",
@@ -96,7 +96,7 @@ impl PerParticle {
         }
     }
 
-    /// What is wrong with it: the number of values, or one that is not `ok`.
+    /// Error of a list: in the number of values, or in a value that is not `ok`.
     fn error(
         &self,
         field: &str,
@@ -132,10 +132,9 @@ impl From<Vec<f32>> for PerParticle {
     }
 }
 
-/// How far particles get from their targets. See the [module](self).
+/// Largest distances of particles from their targets. See the [module](self).
 ///
-/// Change it at any time. What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus), and the last valid
-/// constraints stay in force.
+/// Change it at any time. Errors are reported in [`ClothStatus`](crate::error::ClothStatus), and the last valid constraints stay in force.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -145,7 +144,7 @@ impl From<Vec<f32>> for PerParticle {
 pub struct ClothMotionConstraints {
     /// Furthest from the target \[m\]. Infinity, the default, is free; 0 is held.
     pub max_distance: PerParticle,
-    /// How far behind its target, against the normal, a particle gets \[m\]. Infinity, the default, is no backstop.
+    /// Largest distance of a particle behind its target, against the normal \[m\]. Infinity, the default, is no backstop.
     pub backstop_distance: PerParticle,
     /// Radius of the ball behind the target \[m\]. The larger, the more it is a plane. 1 by default.
     pub backstop_radius: PerParticle,
@@ -183,7 +182,7 @@ impl ClothMotionConstraints {
         }
     }
 
-    /// What is wrong with it, for a cloth of so many particles.
+    /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0;
         let distance = |values: &PerParticle, field| {
@@ -209,7 +208,7 @@ impl ClothMotionConstraints {
     }
 }
 
-/// Which space the targets are given in.
+/// Space of the targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -221,10 +220,10 @@ pub enum TargetSpace {
     World,
 }
 
-/// Where an animation wants the particles at the end of the next step; at rest without this component, and until they are
-/// set. See the [module](self).
+/// Positions that an animation wants for the particles at the end of the next step; rest positions without this component, and until they
+/// are set. See the [module](self).
 ///
-/// What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus), and the targets stay where they are.
+/// Errors are reported in [`ClothStatus`](crate::error::ClothStatus), and the targets stay where they are.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -265,7 +264,7 @@ impl ClothMotionTargets {
         self.set(positions, []);
     }
 
-    /// What is wrong with them, for a cloth of so many particles.
+    /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
         let count = |values: &[Vec3], field: &str, allowed| {
             let wrong = values.len() != particles && !(allowed && values.is_empty());

@@ -164,12 +164,12 @@ pub fn prepare_motion(
 }
 
 impl MotionState {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.limits.memory_bytes() + heap(&self.held)
     }
 
-    /// Whether the targets move on, however slowly.
+    /// Returns whether the targets move, however slowly.
     pub(crate) fn is_led(&self) -> bool {
         self.furthest > STANDS
     }
@@ -178,7 +178,7 @@ impl MotionState {
         self.disturbed
     }
 
-    /// Where a target is at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
+    /// Target at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -296,7 +296,7 @@ impl MotionState {
         self.moving = true;
     }
 
-    /// How far the target moves in this step that moves furthest \[m\].
+    /// Largest displacement of a target in this step \[m\].
     fn furthest(&self) -> f32 {
         let [start, end] = &self.limits.targets;
         let squared = start.iter().zip(end.iter());

@@ -1,4 +1,4 @@
-//! Where targets are when a step wants to know: what [`sampling`](crate::sampling) does for entities.
+//! Sampled targets: positions at the times of steps, as [`sampling`](crate::sampling) has poses of entities.
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
@@ -21,7 +21,7 @@ pub(super) struct TargetsAt<'a> {
     pub positions: [&'a [Vec3]; 2],
     pub normals: [&'a [Vec3]; 2],
     pub part: f32,
-    /// Which they are.
+    /// Identity of the targets.
     pub key: [u64; 3],
 }
 
@@ -44,7 +44,7 @@ impl TargetsAt<'_> {
 }
 
 impl TargetSamples {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let lists = self
             .seen
@@ -53,12 +53,12 @@ impl TargetSamples {
         lists.map(heap).sum()
     }
 
-    /// Whether the targets were put elsewhere since this was asked last.
+    /// Returns whether the targets were put elsewhere since the last call.
     pub(super) fn take_jump(&mut self) -> bool {
         std::mem::take(&mut self.jumped)
     }
 
-    /// Whether the fixed loop moves the targets.
+    /// Returns whether the fixed loop moves the targets.
     pub(super) fn are_fixed(&self) -> bool {
         self.fixed > 0
     }
@@ -137,7 +137,7 @@ impl TargetSamples {
         seen.normals.clone_from(&targets.normals);
     }
 
-    /// How far the target gets that gets furthest \[m\].
+    /// Largest displacement of a target \[m\].
     fn furthest(&self, targets: &ClothMotionTargets) -> f32 {
         let ways = self.seen[0].positions.iter().zip(&targets.positions);
         ways.map(|(from, to)| from.distance_squared(*to))

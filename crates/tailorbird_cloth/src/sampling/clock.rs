@@ -1,10 +1,10 @@
-//! When frames and steps are.
+//! Times of frames and steps.
 
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 
-/// How many frames back is known where things were.
+/// Number of past frames for which places are known.
 pub(crate) const DEPTH: usize = 8;
 
 /// Over how many frames the longest one is looked for.
@@ -17,7 +17,7 @@ const HITCH: i64 = 100_000_000;
 /// equally long must give equal fractions.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct FrameClock {
-    /// When the things were where they were last seen, the last frame first.
+    /// Times of the last places, the last frame first.
     times: [i64; DEPTH],
     known: usize,
     /// The lengths of the last frames, those left out that are longer than a hitch.
@@ -25,45 +25,45 @@ pub struct FrameClock {
     /// The length of the last frame.
     length: i64,
     hitch: bool,
-    /// Whether what is seen takes the place of what was seen last.
+    /// True if a new frame takes the place of the last one.
     pub(super) replaces: bool,
     /// The last frame and the one in progress.
     span: [i64; 2],
-    /// How late things are sampled at both ends of that.
+    /// Delay of sampling at both ends of that.
     delay: [i64; 2],
     pub(super) kind: FrameKind,
-    /// How many frames have begun.
+    /// Number of frames that have begun.
     pub(super) frame: u64,
-    /// How many of them were seen at a time of their own.
+    /// Number of frames that were seen at a time of their own.
     seen: u64,
-    /// How many steps have been sampled.
+    /// Number of steps that have been sampled.
     pub(super) step: u64,
-    /// Whether the fixed loop is running.
+    /// True while the fixed loop is running.
     pub(super) looping: bool,
-    /// What is sampled in the step in progress.
+    /// Moment that is sampled in the step in progress.
     pub(super) moment: Moment,
 }
 
-/// What came between the places of the last two frames.
+/// Event between the places of the last two frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum FrameKind {
-    /// There is nothing before.
+    /// No place is known before.
     #[default]
     First,
     /// No time has passed at all yet: it is where it begins, whoever puts it there last.
     Start,
     /// Time stood still.
     Still,
-    /// So much time that nobody saw what happened.
+    /// A pause so long that nobody saw what happened.
     Hitch,
-    /// So many seconds.
+    /// Seconds between the two.
     Passed(f32),
 }
 
 /// A moment between two frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// How many frames ago the two were, after two more before them.
+    /// Ages of the two frames, in frames, after two more before them.
     pub frames: [usize; 4],
     /// The times between the four \[s\].
     pub gaps: [f32; 3],
@@ -76,12 +76,12 @@ fn nanoseconds(time: Duration) -> i64 {
 }
 
 impl FrameClock {
-    /// What came between the places of the last two frames.
+    /// Event between the places of the last two frames.
     pub(crate) fn kind(&self) -> FrameKind {
         self.kind
     }
 
-    /// How many frames have begun.
+    /// Number of frames that have begun.
     pub(crate) fn frame(&self) -> u64 {
         self.frame
     }
@@ -91,12 +91,12 @@ impl FrameClock {
         self.seen
     }
 
-    /// Whether the fixed loop is running.
+    /// Returns whether the fixed loop is running.
     pub(crate) fn is_looping(&self) -> bool {
         self.looping
     }
 
-    /// What is sampled in the step in progress.
+    /// Moment that is sampled in the step in progress.
     pub(crate) fn moment(&self) -> Moment {
         self.moment
     }
@@ -237,7 +237,7 @@ mod tests {
         }
     }
 
-    /// Where a level is loaded, several frames take long.
+    /// Loading a level makes several frames long.
     #[test]
     fn long_frames_do_not_delay_what_comes_after_them_for_long() {
         let mut clock = FrameClock::default();

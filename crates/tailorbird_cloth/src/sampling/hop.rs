@@ -1,4 +1,4 @@
-//! What is motion, and what is put elsewhere.
+//! Distinction of motion from hops.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
@@ -9,9 +9,9 @@ use bevy_transform::components::Transform;
 /// [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct HopDetector {
-    /// Of the last motion [m/s].
+    /// Velocity of the last motion [m/s].
     velocity: Vec3,
-    /// Of the way that was a hop, where the last one was [m/s].
+    /// Velocity of the last displacement, if that was a hop [m/s].
     suspect: Option<Vec3>,
 }
 
@@ -38,8 +38,8 @@ impl HopDetector {
         self.velocity
     }
 
-    /// Where something came from that hopped from `from` to `to`, had it been put elsewhere and then moved on as before; none
-    /// where it did not hop. `metre` is how long a unit of its space is in the world \[m\].
+    /// Place from which an entity that hopped from `from` to `to` came, had it been put elsewhere and then moved on as before; `None` if it
+    /// did not hop. `metre` is the length of a unit of its space in the world \[m\].
     pub(super) fn came_from(
         &mut self,
         [from, to]: [&Transform; 2],
@@ -94,7 +94,7 @@ pub(super) fn take_along(it: &mut Transform, [from, to]: [&Transform; 2]) {
 pub struct Teleported {
     /// A cloth, what holds it, a collider, a zone of wind, or a parent of one of them.
     pub entity: Entity,
-    /// Whether the game said so; else it was seen.
+    /// True if the game said so; else it was seen.
     pub told: bool,
 }
 

@@ -1,17 +1,17 @@
-//! Where things are when a step wants to know: what holds cloth, carries it, pushes it or blows at it.
+//! Sampling of poses at the times of steps: of entities that hold cloth, carry it, push it or blow at it.
 //!
 //! Cloth steps at a fixed rate. Games move things in `FixedUpdate` and in physics engines, step by step; and in `Update` and
 //! `PostUpdate`, as all animation is, frame by frame. Both may be at any rate, and one may be above the other in the hierarchy: a
 //! bone that is animated in each frame, on a character that physics moves. **The rule**:
 //!
-//! - **What the fixed loop moves is taken as it is**, without delay. That is seen: a `Transform` that is another one when cloth steps
-//!   than when the fixed loop began that step.
-//! - **What is moved between frames is sampled a frame late**, evenly over the steps: where it was between the frames on both sides of
-//!   that moment, on a curve without kinks. Where there is one step at the end of each frame, that is where it is.
-//! - **What moved while cloth did not simulate, or hopped, carries cloth along**; it is not felt.
+//! - **An entity that the fixed loop moves is taken as it is**, without delay. It is recognised by a `Transform` that changes between the
+//!   start of the fixed loop's step and that of cloth.
+//! - **An entity that is moved between frames is sampled a frame late**, evenly over the steps: its pose between the frames on both sides
+//!   of that moment, on a curve without kinks. With one step at the end of each frame, that is its present pose.
+//! - **An entity that moved while cloth did not simulate, or hopped, carries cloth along**; its motion is not felt.
 //!
-//! Translation, rotation and scale of each entity are looked at by themselves: who runs in `FixedUpdate` and looks round in `Update` is
-//! both. So is each parent.
+//! Translation, rotation and scale of each entity are judged by themselves: a character that runs in `FixedUpdate` and looks round in
+//! `Update` is both. Each parent is judged by itself, too.
 //!
 //! ```text
 //! frame            N−1              N                N+1
@@ -24,7 +24,7 @@
 //! see the hand at  s₁−d, s₂−d            s₃−d, s₄−d  on the way from P₀ to P₁, where d is the length of a frame
 //! ```
 //!
-//! The delay d is the length of the longest of the last 32 frames, so that frames which vary do not make what is sampled vary in speed. It
+//! The delay d is the length of the longest of the last 32 frames, so that varying frames do not make sampled motion vary in speed. It
 //! grows at once, and shrinks within a quarter of a second. A frame of more than 0.1 s that takes
 //! three times as long as the one before (an app that was suspended, a level that was loaded) is a pause, in which cloth is carried.
 //!
@@ -33,10 +33,10 @@
 //!
 //! # Hops
 //!
-//! A way whose velocity differs from the one before by more than that one's magnitude and
-//! [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) is a hop: at 60 frames a second half a metre for what
-//! stood, at 30 one metre. All but the motion before it is carried. [`SampledMotion::teleport`] tells of a shorter one; it is a component of
-//! each cloth, collider and zone, of all that holds a cloth, and of all their parents:
+//! A displacement whose velocity differs from the one before by more than that one's magnitude and
+//! [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) is a hop: at 60 frames a second half a metre for an
+//! entity that stood, at 30 one metre. All but the motion before it is carried. [`SampledMotion::teleport`] tells of a shorter one; it is a component of
+//! each cloth, collider and zone, of all holders of a cloth, and of all their parents:
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -58,9 +58,9 @@
 //!
 //! # Blows
 //!
-//! What stays below that may still start or stop too suddenly for cloth to follow. Where one thing holds all of a cloth, its entity or what it
-//! is attached to, it pulls with at most 150 m/s²; what it goes beyond carries the cloth. A holder that stood and moves at 8 to 29 m/s from
-//! one step to the next would else stretch single edges of a cape by 50 to 120 % for a moment.
+//! Motion below that may still start or stop too suddenly for cloth to follow. If one holder has all of a cloth (its entity, or the target of
+//! its attachments), it pulls with at most 150 m/s²; the displacement beyond carries the cloth. Otherwise a holder that stood and moves at 8
+//! to 29 m/s from one step to the next would stretch single edges of a cape by 50 to 120 % for a moment.
 //!
 //! A change of parents is a hop as well. A world whose origin is shifted hops as a whole, which nobody feels.
 
@@ -89,36 +89,36 @@ pub(crate) use sample::{
     sample_motion, sample_parents, see_frame,
 };
 
-/// What the fixed loop has not moved for so many steps is moved between frames.
+/// Number of steps without motion by the fixed loop after which an entity counts as moved between frames.
 pub(crate) const LAPSE: u8 = 15;
 
-/// How an entity moves, as cloth sees it. On all that holds, carries, pushes and blows at cloth, and on their parents. See the
+/// Motion of an entity, as cloth sees it. On all entities that hold, carry, push or blow at cloth, and on their parents. See the
 /// [module](self).
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct SampledMotion {
-    /// Where it was seen in the last frames, the last one first.
+    /// Transforms in the last frames, the last one first.
     #[reflect(ignore)]
     frames: [Transform; DEPTH],
-    /// At the start of the step.
+    /// Transform at the start of the step.
     #[reflect(ignore)]
     from: Transform,
-    /// At its end.
+    /// Transform at its end.
     #[reflect(ignore)]
     now: Transform,
-    /// When this step of the fixed loop began.
+    /// Transform when this step of the fixed loop began.
     #[reflect(ignore)]
     began: Transform,
-    /// For how many steps more translation, rotation and scale count as moved by the fixed loop.
+    /// Number of steps for which translation, rotation and scale still count as moved by the fixed loop.
     fixed: [u8; 3],
     hops: HopDetector,
     parent: Option<Entity>,
     frame: u64,
     step: u64,
     asked: bool,
-    /// Whether it hopped since the last step.
+    /// True if it hopped since the last step.
     hopped: bool,
-    /// Whether it was put elsewhere before this step.
+    /// True if it was put elsewhere before this step.
     teleported: bool,
 }
 
@@ -156,7 +156,7 @@ impl SampledMotion {
         take_along(&mut self.now, way);
     }
 
-    /// Where it got from one frame to the next, without what the fixed loop did.
+    /// Motion from one frame to the next, without that of the fixed loop.
     fn moved_between(&self, [from, to]: [&Transform; 2]) -> Transform {
         let [translation, rotation, scale] = self.fixed.map(|steps| steps > 0);
         Transform {

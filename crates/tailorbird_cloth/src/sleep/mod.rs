@@ -14,17 +14,17 @@ pub use unseen::{carry_unseen, rest_unseen};
 
 use crate::error::ClothErrorKind;
 
-/// When a cloth falls asleep: after it has been at rest for some time. It is at rest when it stays where it has been on average in the
-/// last quarter of a second, but for the way that [`speed`](Self::speed) makes in that time (root of the mean square of all runs of 16
-/// particles side by side, and none five times as far): what drifts or swings does not rest, what trembles on the spot does.
+/// Conditions for a cloth to fall asleep: it has been at rest for some time. A cloth is at rest if the mean positions of blocks of 16
+/// particles side by side differ from their averages over the last quarter of a second by no more than [`speed`](Self::speed) times that
+/// (root mean square), and none by five times as much: a drifting or swinging cloth is not at rest, one that trembles on the spot is.
 ///
-/// What has been at rest for half a second settles: friction within the fabric takes what is left of its motion, within half a second
+/// A cloth that has been at rest for half a second settles: friction within the fabric takes the rest of its motion, within half a second
 /// more, as long as nothing happens that would wake it.
 ///
-/// A cloth that sleeps stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its
-/// transform, its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider
-/// moves, appears or disappears where it lies, and when what holds an attachment or a target of a motion constraint has moved by
-/// 0.1 mm. [`ClothRest::wake`] wakes it by hand.
+/// A sleeping cloth stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its transform,
+/// its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider moves, appears or
+/// disappears where the cloth lies, and when the target of an attachment or of a motion constraint has moved by 0.1 mm. [`ClothRest::wake`]
+/// wakes it by hand.
 ///
 /// With [`unseen`](Self::unseen) it also sleeps while nobody sees it, whatever happens to it: see there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -33,17 +33,17 @@ use crate::error::ClothErrorKind;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothSleep {
-    /// Whether the cloth falls asleep when it is at rest.
+    /// True if the cloth falls asleep when it is at rest.
     pub enabled: bool,
-    /// What is slower rests [m/s]; with 0, nothing settles either.
+    /// Speed below which a cloth is at rest [m/s]; with 0, nothing settles either.
     pub speed: f32,
-    /// How long the cloth has to be at rest \[s\]; at least half a second.
+    /// Time that the cloth has to be at rest \[s\]; at least half a second.
     pub seconds: f32,
-    /// Whether the cloth sleeps while [`ClothSeen`] says that nobody sees it or its shadow; not by default.
+    /// True if the cloth sleeps while [`ClothSeen`] says that nobody sees it or its shadow; not by default.
     ///
-    /// It is then carried along by its entity, or by the first of its attachments where those alone hold it, neither holds nor pushes
-    /// bodies, and does not notice what else happens. Seen again, it goes on in the shape that it had, at the velocity of what
-    /// carries it. Costs nothing where it hangs on nothing that moves, and next to nothing otherwise. One with
+    /// It then moves rigidly with its entity, or with the first of its attachments if those alone hold it. Holders, bodies, colliders, wind
+    /// and forces are ignored, and bodies are not pushed. Seen again, it goes on in the shape that it had, at the velocity of its carrier.
+    /// It costs nothing if its holders do not move, and next to nothing otherwise. A cloth with
     /// [`ClothMotionTargets`](crate::motion::ClothMotionTargets) stays awake.
     pub unseen: bool,
 }
@@ -68,7 +68,7 @@ impl ClothSleep {
         }
     }
 
-    /// What is wrong with these settings.
+    /// Errors in these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
         let check = |field, value, allowed| {
@@ -133,38 +133,38 @@ impl Unseen {
 pub struct ClothRest {
     unseen: Unseen,
     seconds: f32,
-    /// Since when it sleeps.
+    /// Step since which it sleeps.
     asleep: Option<u64>,
-    /// What it settles or sleeps in.
+    /// Surroundings in which it settles or sleeps.
     #[reflect(ignore)]
     around: Option<Surroundings>,
     /// The fingerprint of its settings.
     settings: u64,
 }
 
-/// What acts on a cloth from outside.
+/// Influences on a cloth from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Surroundings {
     gravity: Vec3,
     substeps: Option<u32>,
     iterations: u32,
     air: u64,
-    /// Of the colliders that touch the cloth's box.
+    /// Hash of the colliders that touch the cloth's box.
     colliders: u64,
 }
 
 impl ClothRest {
-    /// How long the cloth has been at rest \[s\].
+    /// Time for which the cloth has been at rest \[s\].
     pub fn seconds(&self) -> f32 {
         self.seconds
     }
 
-    /// Whether the cloth sleeps.
+    /// Returns whether the cloth sleeps.
     pub fn is_asleep(&self) -> bool {
         self.asleep.is_some() || self.is_unseen()
     }
 
-    /// Whether the cloth sleeps because nobody sees it.
+    /// Returns whether the cloth sleeps because nobody sees it.
     pub fn is_unseen(&self) -> bool {
         matches!(self.unseen, Unseen::Since(_) | Unseen::Touched(_))
     }

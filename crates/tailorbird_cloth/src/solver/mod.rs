@@ -1,4 +1,4 @@
-//! How accurate cloth is, and what that costs: two solvers. The systems of a substep are here, what they do is in the crate `tailorbird_solver`.
+//! Accuracy of cloth, and its cost: two solvers. The systems of a substep are here, their arithmetic is in the crate `tailorbird_solver`.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -23,26 +23,26 @@
 //! | 128², hanging by two corners, one thread | 1.5 ms a step; 0.011 % in the mean, 0.09 % at 99 % | 15.6 ms; 9.4 %, 94 % |
 //! | substeps unless set | 6 to 16, by the resolution: [`ClothSolver::substeps`] | 16 |
 //! | stiffness and resolution | stretch is that of the fabric; shear and bending up to a [limit](crate::material) | softer with every particle |
-//! | tethers to the pins, viscosity, calming of knots | yes | no |
+//! | tethers to the pins, viscosity, damping of tangles | yes | no |
 //! | heavy bodies of a physics engine | carried | fall through |
 //! | asked for more than the cloth has | stretches, and lies still | the same |
 //!
 //! The figures are the README's (AVX-512; rigid threads, `cargo run --release -p tailorbird_cloth --example bench -- hang`).
 //!
-//! The classic solver is there to compare with, and for what is meant to stretch like rubber.
+//! The classic solver is there to compare with, and for cloth that is meant to stretch like rubber.
 //!
 //! # More than the cloth has
 //!
-//! Clips farther apart than the way between them along the cloth, a tube that is too tight, a ball that is pushed through a net, a solid
+//! Clips farther apart than the path between them along the cloth, a tube that is too tight, a ball that is pushed through a net, a solid
 //! put into a curtain: no shape of a cloth that hardly stretches meets that. It stretches as evenly as it can (a few edges around a solid
 //! that stays inside by many times their length), lies still, and is whole
-//! again when the demand ends, without flying about. [`ClothStatus::strained`](crate::error::ClothStatus::strained) tells which part of
-//! its edges is longer than the fabric lets them be; one line is logged.
+//! again when the demand ends, without flying about. [`ClothStatus::strained`](crate::error::ClothStatus::strained) is the part of
+//! its edges that is longer than the fabric allows; one line is logged.
 //!
 //! # Substeps
 //!
 //! One pass over the constraints in each of several substeps: at equal cost that stretches less than many passes in few. The error falls
-//! with the square of the substep, the cost grows in proportion. What is calm needs the number that is chosen; a hard gust, a heavy body, a
+//! with the square of the substep, the cost grows in proportion. A calm cloth needs the number that is chosen; a hard gust, a heavy body, a
 //! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). Storms,
 //! a hand and bodies that lie on the cloth raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
 //!
@@ -60,7 +60,7 @@ use tailorbird_solver::{coefficients::Method, topology::Topology};
 
 pub use stages::{calm_knots, solve_constraints, verlet_step};
 
-/// How the constraints of a cloth are solved.
+/// Method by which the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -86,7 +86,7 @@ pub enum ClothSolver {
 pub struct ClothSubsteps(pub u32);
 
 impl ClothSolver {
-    /// How many substeps a cloth needs in a step of 1/60 s.
+    /// Number of substeps that a cloth needs in a step of 1/60 s.
     ///
     /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
     /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 16th of
@@ -110,7 +110,7 @@ impl ClothSolver {
         }
     }
 
-    /// The same for the solver.
+    /// Method for the solver.
     pub(crate) fn method(self) -> Method {
         match self {
             Self::Chains => Method::Lines,
@@ -118,8 +118,8 @@ impl ClothSolver {
         }
     }
 
-    /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
-    /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
+    /// Least number of substeps of a cloth while a hand holds it: the hand may stretch an edge by a tenth, which bounds its force in a
+    /// substep, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
         let side = match (self, topology.lattice()) {
             (Self::GaussSeidel, _) => 0,

@@ -37,21 +37,21 @@ pub struct BlowingWind {
     sources: Vec<Source>,
 }
 
-/// What blows somewhere.
+/// A wind or a zone that blows in this step.
 #[derive(Clone, Debug)]
 struct Source {
     /// The zone's.
     entity: Option<Entity>,
     shape: WindRegion,
     falloff: f32,
-    /// Where it is in the world.
+    /// Pose in the world.
     at: Isometry3d,
-    /// In world axes [m/s].
+    /// Velocity in world axes [m/s].
     velocity: Vec3,
     turbulence: Turbulence,
-    /// Of its turbulence, in its own axes; amplitudes are 0 where there is none.
+    /// Waves of its turbulence, in its own axes; amplitudes are 0 without any.
     waves: [Wave; WAVES],
-    /// How far it has carried its eddies, in its own axes \[m\].
+    /// Displacement of its eddies, in its own axes \[m\].
     drift: DVec3,
 }
 
@@ -220,7 +220,7 @@ impl BlowingWind {
         })
     }
 
-    /// What tells the air around a cloth from another.
+    /// Number that tells the air around a cloth from another.
     pub(crate) fn kind(&self, frame: &ClothFrame, bounds: &ClothBounds) -> u64 {
         let mut hasher = DefaultHasher::new();
         self.valid.model.hash(&mut hasher);
@@ -231,7 +231,7 @@ impl BlowingWind {
         hasher.finish()
     }
 
-    /// What [`apply_wind`] does to one cloth.
+    /// Runs [`apply_wind`] for one cloth.
     pub(crate) fn blow(&self, step: &ClothStep, workers: Workers, cloth: &mut ClothStagesItem) {
         let (model, density) = (self.valid.model, self.valid.air_density);
         let (topology, material, frame) = (cloth.topology, cloth.material, &*cloth.frame);
@@ -364,7 +364,7 @@ impl BlowingWind {
 }
 
 impl Source {
-    /// The same in the axes of a cloth's frame; at full strength everywhere where it is `whole`.
+    /// Breeze in the axes of a cloth's frame; at full strength everywhere if it is `whole`.
     fn breeze(&self, frame: &ClothFrame, whole: bool) -> Breeze {
         let frame = frame.isometry();
         let to_own = self.at.inverse() * frame;

@@ -32,17 +32,17 @@ pub use zone::{WindShape, WindZone};
 pub struct Wind {
     /// Mean velocity of the air [m/s].
     pub velocity: Vec3,
-    /// How it varies.
+    /// Variation in time.
     pub gusts: Gusts,
-    /// How it swirls.
+    /// Turbulence.
     pub turbulence: Turbulence,
-    /// How it pushes.
+    /// Model of its push.
     pub model: WindModel,
     /// Density of the air [kg/m³]: 1.225 at sea level and 15 °C.
     pub air_density: f32,
 }
 
-/// How the wind varies in time. The same at every run: it depends on simulated time alone.
+/// Variation of the wind in time. The same at every run: it depends on simulated time alone.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -54,7 +54,7 @@ pub struct Gusts {
     pub period: f32,
 }
 
-/// How the wind pushes on a triangle.
+/// Model of the wind's push on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -112,7 +112,7 @@ impl Wind {
         self.gusts.vary(self.velocity, seconds)
     }
 
-    /// What is wrong with this wind.
+    /// Errors of this wind.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
         [
@@ -139,7 +139,7 @@ impl Wind {
 }
 
 impl Gusts {
-    /// How a mean velocity [m/s] varies in time: its value after so many seconds.
+    /// Mean velocity [m/s] after so many seconds of variation in time.
     ///
     /// A gust is a sum of sines whose periods have no common multiple. It changes the speed by at most
     /// [`strength`](Self::strength) and swings the direction by at most half of that (in radians), about the axis that is
@@ -166,7 +166,7 @@ impl Gusts {
         turned * (1.0 + strength * speed).max(0.0)
     }
 
-    /// What is wrong with them; `fields` names strength and period.
+    /// Errors of these gusts; `fields` names strength and period.
     pub(crate) fn errors(&self, fields: [&'static str; 2]) -> impl Iterator<Item = ClothErrorKind> {
         let strength = |v: f32| v >= 0.0 && v.is_finite();
         let period = |v: f32| v > 0.0 && v.is_finite();
@@ -184,7 +184,7 @@ impl Gusts {
     }
 }
 
-/// What is wrong with turbulence; `fields` names its speed and its scale.
+/// Errors of turbulence; `fields` names its speed and its scale.
 fn turbulence_errors(
     turbulence: &Turbulence,
     fields: [&'static str; 2],

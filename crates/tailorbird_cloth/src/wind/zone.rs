@@ -40,15 +40,15 @@ use crate::{
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 #[require(Transform, ClothStatus, SampledMotion)]
 pub struct WindZone {
-    /// Where it blows.
+    /// Region in which it blows.
     pub shape: WindShape,
     /// Mean velocity of the air, along the entity's axes [m/s].
     pub velocity: Vec3,
     /// Width inside the border over which the wind rises from nothing to its full speed \[m\]; 0 is at once. Nothing outside moves.
     pub falloff: f32,
-    /// How it varies.
+    /// Variation in time.
     pub gusts: Gusts,
-    /// How it swirls.
+    /// Turbulence.
     pub turbulence: Turbulence,
 }
 
@@ -84,7 +84,7 @@ impl WindZone {
         }
     }
 
-    /// What is wrong with this zone.
+    /// Errors of this zone.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let positive = |v: f32| v > 0.0 && v.is_finite();
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();

@@ -11,7 +11,7 @@ use crate::scene::{Scene, Sheet};
 /// Sizes that leave remainders in vectors of 4, 8 and 16 lanes.
 const SIZES: [UVec2; 3] = [UVec2::new(5, 7), UVec2::new(17, 33), UVec2::new(50, 50)];
 
-/// How many threads the child has.
+/// Variable with the number of the child's threads.
 const THREADS: &str = "CHAINS_TEST_THREADS";
 
 const MARK: &str = "bits: ";

@@ -12,7 +12,7 @@ use tailorbird_cloth::prelude::*;
 /// Standard gravity [m/s²].
 pub const G: f32 = 9.81;
 
-/// What is simulated.
+/// Scene to simulate.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub size: Vec2,
@@ -30,7 +30,7 @@ pub struct Scene {
     pub sphere: Option<(Vec3, f32)>,
     /// Of the pool; a process has one, that of the first scene.
     pub threads: Option<usize>,
-    /// How many sheets, 3 m apart along x.
+    /// Number of sheets, 3 m apart along x.
     pub sheets: u32,
     pub sleep: ClothSleep,
 }
@@ -197,7 +197,7 @@ impl Sheet {
         self.app.world().resource::<ClothStep>().substep_seconds()
     }
 
-    /// How far particles moved in the last step of 1/60 s, by its length, root of the mean square [m/s].
+    /// Displacement of particles in the last step of 1/60 s, by its length, root of the mean square [m/s].
     pub fn speed(&self) -> f64 {
         let particles = self.particles();
         let (to, from) = (particles.points(), particles.previous_points());
@@ -219,7 +219,7 @@ impl Sheet {
         (0..particles.len()).map(mass).sum()
     }
 
-    /// What is wrong with the first sheet, or with where it is.
+    /// Complaint about the first sheet, or about its place.
     pub fn complaint(&self) -> Option<String> {
         let status = self.get::<ClothStatus>();
         if let Some(error) = status.errors().next() {

@@ -1,4 +1,4 @@
-//! How far a sheet that should not stretch does.
+//! Stretch of a sheet that should not stretch.
 
 use std::f32::consts::TAU;
 
@@ -39,7 +39,7 @@ fn a_hanging_sheet_hardly_stretches() {
     check("hang, last quarter", hanging, 1e-3, 1e-2);
 }
 
-/// Where forces are many times the weight, transverse waves outrun the eight substeps of a quiet sheet of this size.
+/// Substeps for forces of many times the weight: transverse waves then outrun the eight substeps of a quiet sheet of this size.
 const BUSY: Option<u32> = Some(16);
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is wrong with a collider is told, with field, value and what is allowed.
+//! Errors of colliders are told, with field, value and the allowed range.
 
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3};
 use tailorbird_cloth::{collider::Compound, prelude::*};

@@ -1,4 +1,4 @@
-//! What bodies get back.
+//! Reactions of bodies.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec3};

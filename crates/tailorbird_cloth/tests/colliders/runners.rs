@@ -141,7 +141,7 @@ fn what_carries_a_body_stays_awake_either_way() {
     assert_eq!(differs, None, "first step that differs");
 }
 
-/// What wakes a cloth is met in the same step, with systems of a game as without.
+/// A collider that wakes a cloth is met in the same step, with systems of a game as without.
 #[test]
 fn what_wakes_a_cloth_is_met_at_once_either_way() {
     let run = |own_stages: bool| {

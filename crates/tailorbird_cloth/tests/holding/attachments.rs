@@ -1,4 +1,4 @@
-//! What rigid attachments do.
+//! Rigid attachments.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};

@@ -1,4 +1,4 @@
-//! What is wrong is told, and what was right stays in force.
+//! Errors are told, and the last valid state stays in force.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};

@@ -18,7 +18,7 @@ fn hanging(attachment: ClothAttachment, side: u32) -> (World, Entity, Entity) {
     (world, cloth, attachment)
 }
 
-/// How far the sheet's upper corner hangs below where it is held, and its weight.
+/// Distance of the sheet's upper corner below the point that holds it, and its weight.
 fn sag(world: &World, cloth: Entity) -> (f32, f32) {
     (0.5 - world.at(cloth, 0).y, world.mass(cloth) * G)
 }

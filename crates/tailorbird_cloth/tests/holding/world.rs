@@ -125,7 +125,7 @@ impl World {
         self.get(cloth)
     }
 
-    /// Where a particle is in the world.
+    /// Position of a particle in the world.
     pub fn at(&self, cloth: Entity, particle: usize) -> Vec3 {
         let frame: &ClothFrame = self.get(cloth);
         self.particles(cloth).world_position(particle, frame)
@@ -136,7 +136,7 @@ impl World {
         (0..count).map(|i| self.at(cloth, i)).collect()
     }
 
-    /// How fast a particle moves, in world axes.
+    /// Velocity of a particle, in world axes.
     pub fn velocity(&self, cloth: Entity, particle: usize) -> Vec3 {
         let frame: &ClothFrame = self.get(cloth);
         frame.vector_to_world(self.particles(cloth).velocity(particle))

@@ -1,4 +1,4 @@
-//! What is put elsewhere takes its cloth along.
+//! An entity that is put elsewhere takes its cloth along.
 
 use bevy_app::{PostUpdate, Update};
 use bevy_ecs::prelude::*;
@@ -239,7 +239,7 @@ fn a_collider_that_hops_sweeps_nothing_along() {
     }
 }
 
-/// What holds the cape is hung on somebody else.
+/// The cape's holder gets another parent.
 #[test]
 fn a_holder_that_gets_another_parent_takes_the_cloth_along() {
     for fps in RATES {

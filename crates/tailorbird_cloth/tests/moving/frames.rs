@@ -1,4 +1,4 @@
-//! What moves in each frame gives what motion in `FixedUpdate` gives, at all rates.
+//! Motion in each frame gives the same as motion in `FixedUpdate`, at all rates.
 
 use bevy_app::{FixedFirst, FixedLast, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
@@ -24,8 +24,8 @@ fn swing(t: f32) -> Transform {
     .with_rotation(Quat::from_rotation_y(0.4 * ramp * (5.0 * t).sin()))
 }
 
-/// What is seen from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and
-/// twice the same motion, a step later, differs by 10 %.
+/// Film from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and twice the
+/// same motion, a step later, differs by 10 %.
 fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Game)) -> Film {
     let mut game = Game::new(fps, hz);
     game.app.insert_resource(Wind::default());
@@ -36,7 +36,7 @@ fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Game)) -> Film {
     game.film()
 }
 
-/// How much more all rows are jolted than with motion in `FixedUpdate`, at worst.
+/// Ratio of the jolts of all rows to those with motion in `FixedUpdate`, at worst.
 fn worst(film: &Film, fixed: &Film, columns: usize) -> f32 {
     let rows = film.jolts(columns).into_iter().zip(fixed.jolts(columns));
     rows.map(|(is, should)| is / should).fold(0.0, f32::max)
@@ -166,7 +166,7 @@ fn what_the_fixed_loop_moves_is_not_delayed() {
     }
 }
 
-/// What is between the poses of a physics engine, which it puts back before its steps.
+/// State between the poses of a physics engine, which it puts back before its steps.
 #[derive(Component, Default)]
 struct Eased {
     poses: [Transform; 2],

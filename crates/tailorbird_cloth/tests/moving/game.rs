@@ -49,7 +49,7 @@ fn aim(when: When) -> impl Fn(Res<Time>, Query<(&TargetMover, &Cloth, &mut Cloth
     }
 }
 
-/// Where all particles of the first cloth were after each step, in the world.
+/// Positions of all particles of the first cloth after each step, in the world.
 #[derive(Resource, Default)]
 pub struct Film {
     pub steps: Vec<Vec<Vec3>>,
@@ -109,7 +109,7 @@ impl Game {
         game
     }
 
-    /// How long frames are from now on.
+    /// Sets the length of frames from now on.
     pub fn set_frame(&mut self, frame: Duration) {
         self.frame = frame;
         self.app
@@ -224,7 +224,7 @@ pub fn cape() -> impl Bundle {
     )
 }
 
-/// How the cape is held.
+/// Holder of the cape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
     /// Pinned to its entity, which moves.

@@ -1,4 +1,4 @@
-//! What moved while a cloth did not simulate carries it along.
+//! Motion while a cloth did not simulate carries it along.
 
 use bevy_ecs::{entity_disabling::Disabled, prelude::*};
 use bevy_math::Vec3;
@@ -58,7 +58,7 @@ fn stop(game: &mut Game, cloth: Entity, why: Why, stops: bool) {
     }
 }
 
-/// What was taken off.
+/// Cloth that was taken off.
 #[derive(Component)]
 struct Shape(Option<Cloth>);
 

@@ -89,7 +89,7 @@ fn an_irregular_mesh_hangs_by_a_corner() {
     });
 }
 
-/// What only springs hold is strained as well.
+/// A sheet that only springs hold is strained as well.
 #[test]
 fn two_springs_that_go_too_far_apart_stretch_a_sheet() {
     let spring = |at| Hold {

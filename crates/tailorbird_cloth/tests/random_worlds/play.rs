@@ -1,4 +1,4 @@
-//! What happens, event by event.
+//! Play of a world, event by event.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
@@ -13,10 +13,10 @@ use crate::{
     world::{By, Event, Grip, Hold, Shape, Sheet, World as Description},
 };
 
-/// What the colliders are on that were taken off the cloth's layers.
+/// Layers of colliders that were taken off the cloth's layers.
 const NOBODY: ClothLayers = ClothLayers::new(0, 0);
 
-/// How long a collider flies that appears with a velocity \[s\].
+/// Time for which a collider flies that appears with a velocity \[s\].
 const FLIGHT: f32 = 0.5;
 
 /// The farthest way of a half-space \[m\].
@@ -25,9 +25,9 @@ const BURIED: f32 = 1.0;
 /// An entity on its way.
 struct Mover {
     entity: Entity,
-    /// Where it was put at the start.
+    /// Transform at the start.
     rest: Transform,
-    /// How far it is from there, and where it goes \[m\].
+    /// Displacement from there now, and its goal \[m\].
     way: [Vec3; 2],
     /// [m/s].
     speed: f32,
@@ -37,7 +37,7 @@ struct Mover {
     turning: f32,
 }
 
-/// What happens, and to whom.
+/// Play of the events on a cloth.
 #[derive(Resource)]
 pub struct Play {
     seconds: f32,
@@ -76,7 +76,7 @@ impl Mover {
         (self.way[1], self.turn[1]) = (self.way[0], self.turn[0]);
     }
 
-    /// Where it is after so many seconds more.
+    /// Transform after so many seconds more.
     fn advance(&mut self, seconds: f32) -> Transform {
         let toward = |[from, to]: [Vec3; 2], most: f32| from.move_towards(to, most);
         if seconds > 0.0 {
@@ -128,7 +128,7 @@ fn held(grip: &Grip, size: Vec2, rest: &[Vec3]) -> Vec<u32> {
 }
 
 impl Shape {
-    /// How far it goes that is to go this way: a half-space that goes far buries everything, and it takes long to come out.
+    /// Displacement for a wanted one: a half-space that goes far buries everything, and it takes long to come out.
     fn way(&self, by: Vec3) -> Vec3 {
         if matches!(self, Self::HalfSpace) {
             by.clamp_length_max(BURIED)
@@ -331,7 +331,7 @@ impl Play {
         film.reach = film.reach.max(reach);
     }
 
-    /// What is to be moved while time stands still, if anything.
+    /// Motion while time stands still, if there is any.
     pub fn take_pause(&mut self) -> Option<(usize, Vec3)> {
         self.pause.take()
     }

@@ -85,7 +85,7 @@ fn velocity_growing_without_end_on_a_resting_contact() {
     }
 }
 
-/// What has next to no mass is struck by what has much, moved by the game or by itself.
+/// A particle of next to no mass is struck by a heavy body, moved by the game or by itself.
 #[test]
 fn very_low_mass_per_particle_exploding() {
     const SPEED: f32 = 2.0;
@@ -164,7 +164,7 @@ fn push_ball(
     });
 }
 
-/// Where tiles or balls of a square of 2 m are.
+/// Positions of tiles or balls of a square of 2 m.
 fn places(side: u32) -> impl Iterator<Item = Vec3> {
     let at = move |k: u32| 2.0 * (k as f32 + 0.5) / side as f32 - 1.0;
     (0..side * side).map(move |k| Vec3::new(at(k % side), at(k / side), 0.0))

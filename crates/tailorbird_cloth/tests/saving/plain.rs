@@ -209,7 +209,7 @@ fn motion_constraints_and_targets_come_back() {
     }
 }
 
-/// Where a number is small, a file is not the place to lose digits.
+/// Small numbers keep their digits in a file.
 #[test]
 fn numbers_come_back_with_all_their_bits() {
     let odd = ClothMaterial {

@@ -5,7 +5,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::read;
 
-/// What is wrong with a RON file.
+/// Error of a RON file.
 fn wrong<T: DeserializeOwned>(text: &str) -> String {
     match ron::from_str::<T>(text) {
         Ok(_) => panic!("nothing wrong: {text}"),
@@ -188,7 +188,7 @@ fn a_limit_that_is_no_number() {
     says(&speed.unwrap_err().to_string(), "null");
 }
 
-/// What code can set as well is read, and reported when it is used.
+/// Values that code can set as well are read, and reported when they are used.
 #[test]
 fn other_values_are_checked_where_they_are_used() {
     let material: ClothMaterial = read("(friction: NaN)");

@@ -14,7 +14,7 @@ use crate::{
 /// A wind in a part of the world, with its eddies, in the axes of a cloth's frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Breeze {
-    /// Mean [m/s].
+    /// Mean velocity [m/s].
     pub velocity: Vec3,
     /// Its eddies, where it has any.
     pub waves: Option<[Wave; WAVES]>,
@@ -25,10 +25,10 @@ pub struct Breeze {
     pub to_own: Isometry3d,
 }
 
-/// Adds the way of the air in `seconds` to points `out`, for a range of particles.
+/// Adds the displacement of the air in `seconds` to the points `out` of a range of particles.
 ///
 /// # Panics
-/// When there are not as many points as particles, or not as many particles.
+/// When the number of points differs from that of particles, or the range is not within.
 pub fn add(
     level: Level,
     breeze: &Breeze,
@@ -70,9 +70,9 @@ fn add_to<S: Simd>(
                 let turns = V3::splat(simd, wave.turns).dot(p) + S::f32s::splat(simd, wave.phase);
                 velocity = velocity + Factor(sine(simd, turns)) * V3::splat(simd, wave.amplitude);
             }
-            let way = Factor(seconds * strength(simd, breeze, p)) * velocity;
+            let displacement = Factor(seconds * strength(simd, breeze, p)) * velocity;
             let before = out.load_at(simd, window, 0);
-            out.store_at(simd, window, 0, before + way);
+            out.store_at(simd, window, 0, before + displacement);
         },
     );
 }
@@ -89,7 +89,7 @@ fn sine<S: Simd>(simd: S, turns: S::f32s) -> S::f32s {
     s * (a + b * s.abs())
 }
 
-/// How strongly it blows at a place: 0 to 1.
+/// Strength of the wind at a place: 0 to 1.
 #[inline(always)]
 fn strength<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> S::f32s {
     let [zero, one] = [S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0)];
@@ -114,7 +114,7 @@ fn strength<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> S::f32s {
     }
 }
 
-/// A place in the axes of the shape.
+/// Place in the axes of the shape.
 #[inline(always)]
 fn own<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> V3<S> {
     let rotation = Mat3::from_quat(breeze.to_own.rotation);

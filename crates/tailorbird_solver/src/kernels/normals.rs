@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{points::Points, topology::lattice::Lattice};
 
-/// Unit normals of the triangles. One without area keeps the normal it had.
+/// Unit normals of the triangles. A triangle without area keeps the normal it had.
 ///
 /// # Panics
 /// When a corner is not below the number of particles, or there are fewer normals than triangles.
@@ -43,8 +43,8 @@ pub fn smooth(triangles: &[[u32; 3]], position: &Points, normals: &mut Points) {
     }
 }
 
-/// What [`smooth`] does, for a range of the rows of a sheet whose cells are cut as in `topology::grid`: cells side by side.
-/// Nothing but the normals of these rows is written, so that several threads may do different rows.
+/// Computes [`smooth`] for a range of the rows of a sheet whose cells are cut as in `topology::grid`: cells side by side. Only the normals
+/// of these rows are written, so that several threads may do different rows.
 ///
 /// # Panics
 /// When there are not as many positions and normals as particles, or not as many rows.
@@ -70,7 +70,7 @@ pub fn smooth_lattice(
     });
 }
 
-/// The normal of each particle.
+/// Sum of normals around each particle.
 #[derive(Clone, Copy)]
 struct Smooth<'a> {
     position: &'a Points,

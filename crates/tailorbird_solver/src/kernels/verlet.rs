@@ -1,8 +1,8 @@
 //! Verlet integration: x' = x + (x − x⁻) d + a h².
 //!
-//! In `f32` the sum loses the low bits of a h², which is 10⁻⁵ of x and less, and since x − x⁻ is the velocity, what is lost once
-//! is missing ever after: a cloth in free fall would lag by millimetres in seconds. So what rounding takes from a displacement is
-//! kept and given to the next one (as Kahan does for sums).
+//! In `f32` the sum loses the low bits of a h², which is 10⁻⁵ of x and less, and since x − x⁻ is the velocity, a loss is permanent: a cloth
+//! in free fall would lag by millimetres in seconds. So the rounding error of a displacement is kept and added to the next one (as Kahan
+//! does for sums).
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use crate::points::Points;
 pub struct Verlet {
     /// Length of the substep, h \[s\].
     pub seconds: f32,
-    /// Length of the substep before \[s\]: x − x⁻ took this long. 0 for a cloth that has not moved yet.
+    /// Length of the substep before \[s\]: the time of x − x⁻. 0 for a cloth that has not moved yet.
     pub seconds_before: f32,
     /// Rate at which velocity decays [1/s].
     pub damping: f32,
@@ -26,8 +26,8 @@ pub struct Verlet {
 }
 
 impl Verlet {
-    /// The part of x − x⁻ that is kept, d: e^(−damping · h), so that the decay over a time does not depend on how many
-    /// substeps it is divided into; times h/h⁻ where the length changed.
+    /// Part of x − x⁻ that is kept, d: e^(−damping · h), so that the decay over a time does not depend on the number of substeps; times
+    /// h/h⁻ where the length changed.
     pub fn kept(&self) -> f32 {
         let same = self.seconds_before == self.seconds || self.seconds_before == 0.0;
         let ratio = if same {
@@ -41,11 +41,11 @@ impl Verlet {
     /// Moves the free ones (`inv_mass` > 0) of some particles from `previous` over `position` to the new position, which replaces
     /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
-    /// `acceleration` comes in addition to gravity [m/s²]; none is 0. `lost` is what rounding took from the displacement of
-    /// each particle in the substep before \[m\], and is replaced by what it takes in this one.
+    /// `acceleration` is added to gravity [m/s²]; `None` is 0. `lost` is the rounding error of the displacement of each particle in the
+    /// substep before \[m\], and is replaced by that of this one.
     ///
     /// # Panics
-    /// Where the lengths differ.
+    /// When the lengths differ.
     pub fn step(
         &self,
         level: Level,

@@ -1,4 +1,4 @@
-//! The chain solver: what it does to a cloth in a substep. The page beside the kernels, `kernels/README.md`, explains it.
+//! The chain solver: a pass over the constraints of a cloth. The page beside the kernels, `kernels/README.md`, explains it.
 
 use fearless_simd::Level;
 
@@ -15,7 +15,7 @@ use crate::{
         spring::alpha_tilde,
         tether,
         verlet::Verlet,
-        viscosity::{self, Beside, Motion},
+        viscosity::{self, Beside, SheetMotion},
     },
     particles::{Input, Particles, Scratch, State},
     substep::Substep,
@@ -28,13 +28,13 @@ use crate::{
     workers::Workers,
 };
 
-/// How much longer than at rest a tether is [-]: what is left to the chains.
+/// Factor of the lengths of tethers [-]: the rest is left to the chains.
 const SLACK: f32 = 1.001;
 
-/// The same where the ways to the pins run over a curved surface and are less certain.
+/// The same factor for a curved surface, on which distances from pins are less certain.
 const CURVED_SLACK: f32 = 1.005;
 
-/// How many times the strain of a sheet that hangs by its own weight a tether of a fabric that stretches allows [-].
+/// Strain that a tether of a stretching fabric allows, as a multiple of that of a sheet that hangs by its own weight [-].
 const STRETCH_ROOM: f32 = 20.0;
 
 /// One pass over the constraints.
@@ -47,12 +47,12 @@ pub struct Pass<'a> {
     pub seconds: f32,
     /// Strength of gravity [m/s²].
     pub gravity: f32,
-    /// Which direction comes first alternates with it.
+    /// Number of the pass: the order of rows and columns alternates with it.
     pub number: u32,
 }
 
 impl<'a> Pass<'a> {
-    /// The pass `k` of a substep.
+    /// Pass `k` of a substep.
     pub fn of(
         substep: &Substep<'a>,
         topology: &'a Topology,
@@ -77,13 +77,14 @@ impl Pass<'_> {
         alpha_tilde(compliance, self.seconds)
     }
 
-    /// The lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal density [kg/m²].
+    /// Stiffness of the lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal
+    /// density [kg/m²].
     fn line(&self, compliance: f32, along: f32, across: f32, density: f32) -> LineStiffness {
         let bend = self.material.bend_compliance * along * along * along / across;
         LineStiffness {
             rest_length: along,
             stretch: self.alpha_tilde(compliance * along / across),
-            // What is curved at rest has hinges.
+            // A sheet that is curved at rest has hinges.
             bend: if self.topology.flat {
                 self.alpha_tilde(bend)
             } else {
@@ -93,7 +94,7 @@ impl Pass<'_> {
         }
     }
 
-    /// How large the cloth is \[m\].
+    /// Size of the cloth \[m\].
     pub fn size(&self) -> f32 {
         match &self.topology.layout {
             Layout::Sheet(SheetLayout { lattice, .. }) => {
@@ -103,7 +104,7 @@ impl Pass<'_> {
         }
     }
 
-    /// How much longer than at rest tethers are [-].
+    /// Factor of the lengths of tethers [-].
     pub fn slack(&self) -> f32 {
         let material = self.material;
         let size = self.size();
@@ -115,11 +116,11 @@ impl Pass<'_> {
         let weight = material.areal_density * self.gravity.max(1.0) * size;
         let compliance = material.warp_compliance.max(material.weft_compliance);
         let room = STRETCH_ROOM * compliance * weight;
-        // Not finite or negative: the material is reported elsewhere.
+        // Not for a stretch that is not finite or negative: the material is reported elsewhere.
         slack + if room > 0.0 { room.min(1e6) } else { 0.0 }
     }
 
-    /// The particles as columns and rows, and where they were at the start of the substep.
+    /// Particles as columns and rows, and their positions at the start of the substep.
     fn sheet<'a>(
         &self,
         particles: &'a mut Particles,
@@ -158,14 +159,14 @@ impl Pass<'_> {
         self.number % 2 == 1
     }
 
-    /// Tethers, bending, shear, then whole lines: rows and columns, and the other way round in every second pass.
+    /// Solves tethers, bending, shear, then whole lines: rows and columns, and in every second pass columns first.
     pub fn solve(&self, tethers: &Tethers, particles: &mut Particles) {
         let topology = self.topology;
         if particles.len() != topology.particles() || particles.is_empty() {
             return;
         }
         let slack = self.slack() * (1.0 + particles.state.grant.largest());
-        // A hand does not pull the cloth further from its pins than it reaches.
+        // A hand does not pull the cloth further from its pins than the tethers reach.
         if let Some((held, _)) = particles.input.held.in_hand() {
             let i = held as usize;
             let position = &mut particles.state.position;
@@ -337,7 +338,7 @@ pub fn integrate(
 }
 
 /// Moves a sheet, in blocks of rows, one for each part of the workers.
-fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
+fn sweep(substep: &Substep, motion: SheetMotion, scratch: &mut Vec<f32>) {
     let (level, workers) = (substep.level, substep.workers);
     let rows = motion.sheet.rows;
     let part = workers.part(rows);

@@ -21,11 +21,11 @@ use super::{
 };
 use crate::error::ShapeError;
 
-/// Particles that are this part of the square root of twice the area out of a plane still count as lying in it.
+/// Tolerance of a plane mesh: distance of a particle from the plane, as a part of the square root of twice the area.
 const FLAT: f32 = 1e-4;
 
-/// How close the square of a triangle's longest edge must come to the sum of the other two squares (or exceed it) for
-/// that edge to be a diagonal. 1 is a right angle.
+/// Least ratio of the square of a triangle's longest edge to the sum of the other two squares for that edge to be a diagonal. 1 is a right
+/// angle.
 const DIAGONAL: f32 = 0.9;
 
 /// Builds the topology of a triangle mesh. Areas and revision are left to the caller.
@@ -71,7 +71,7 @@ pub(super) fn constraints(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Di
     constraints
 }
 
-/// Who is joined to whom by an edge or a diagonal.
+/// Neighbours of each particle by an edge or a diagonal.
 pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> NeighborLists {
     let [_, shear, stretch] = springs(triangles, rest_positions);
     NeighborLists::new(rest_positions.len(), stretch.iter().chain(&shear).copied())
@@ -101,7 +101,7 @@ fn arrange(topology: &mut Topology, edges: &MeshEdges, uvs: Option<&[[Vec2; 3]]>
     }
 }
 
-/// Stores the particle with the given number `order[i]` as `i`.
+/// Stores the particle with the original index `order[i]` as `i`.
 fn reorder(topology: &mut Topology, order: Vec<u32>) {
     let number = inverse(&order);
     let rest = &topology.rest_positions;
@@ -113,7 +113,7 @@ fn reorder(topology: &mut Topology, order: Vec<u32>) {
     topology.order = ParticleOrder::new(order);
 }
 
-/// Whether all triangles lie in one plane and face one way.
+/// Returns whether all triangles lie in one plane and face one way.
 fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     let corners = |t: &[u32; 3]| t.map(|i| rest_positions[i as usize]);
     let areas = triangles.iter().map(|t| {
@@ -139,15 +139,13 @@ fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     high - low <= FLAT * size && areas.into_iter().all(|area| area.dot(normal) > 0.0)
 }
 
-/// One side of an edge: the edge with the lower particle first, the opposite corner, whether the edge is the
-/// triangle's diagonal.
+/// One side of an edge: the edge with the lower particle first, the opposite corner, and a flag: the edge is the triangle's diagonal.
 type Side = ([u32; 2], u32, bool);
 
-/// The pairs of particles joined by springs, by family in the order of [`ConstraintFamily::ALL`].
+/// Pairs of particles joined by springs, by family in the order of [`ConstraintFamily::ALL`].
 ///
-/// An edge that is the longest of a right-angled or obtuse triangle on every side is a diagonal: it and the other
-/// diagonal of its quad resist shear. Every other edge resists stretch, and the corners opposite to it are joined
-/// against bending.
+/// An edge that is the longest of a right-angled or obtuse triangle on every side is a diagonal: it and the other diagonal of its quad
+/// resist shear. Every other edge resists stretch, and the corners opposite to it are joined against bending.
 fn springs(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> [Vec<[u32; 2]>; 3] {
     let mut sides: Vec<Side> = Vec::with_capacity(triangles.len() * 3);
     for &[a, b, c] in triangles {

@@ -27,7 +27,7 @@ pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
     }
 }
 
-/// How many springs there are.
+/// Number of springs.
 pub(super) fn constraint_count(columns: usize, rows: usize) -> usize {
     let at = |step: usize| {
         let (c, r) = (columns.saturating_sub(step), rows.saturating_sub(step));
@@ -36,8 +36,8 @@ pub(super) fn constraint_count(columns: usize, rows: usize) -> usize {
     at(1) + at(2)
 }
 
-/// The springs, 8 for each particle of a large grid. A spring that spans `step` rows (or columns) shares no particle
-/// with those whose first row, divided by `step`, is even as well: two batches for each direction.
+/// Springs, 8 for each particle of a large grid. A spring that spans `step` rows (or columns) shares no particle with springs whose first
+/// row, divided by `step`, is even as well: two batches for each direction.
 pub(super) fn constraints(columns: u32, rows: u32, rest_positions: &[Vec3]) -> DistanceConstraints {
     use ConstraintFamily::{Bend, Shear, Stretch};
     const ALONG_ROW: (u32, u32, bool) = (1, 0, false);

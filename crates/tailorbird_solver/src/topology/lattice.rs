@@ -1,4 +1,4 @@
-//! Sheets.
+//! Sheets: particles in columns and rows at equal spacing.
 
 use bevy_math::Vec2;
 
@@ -9,7 +9,7 @@ pub struct Lattice {
     pub columns: u32,
     /// Particles in a column.
     pub rows: u32,
-    /// Between neighbours of a row, and of a column \[m\].
+    /// Distance of neighbours in a row, and in a column \[m\].
     pub spacing: Vec2,
 }
 

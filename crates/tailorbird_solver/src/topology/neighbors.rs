@@ -1,16 +1,16 @@
-//! Who is joined to whom.
+//! Neighbours of particles: by an edge or a diagonal.
 
 use std::ops::Deref;
 
 use super::{alive::Family, layout::SheetLayout};
 use crate::memory::heap;
 
-/// The particles that are joined to one by an edge or a diagonal.
+/// Particles that are joined to a particle by an edge or a diagonal.
 #[derive(Clone, Copy, Debug)]
 pub enum Neighbors<'a> {
-    /// Those of a particle of a lattice: up to eight.
+    /// Neighbours of a particle of a lattice: up to eight.
     Around([u32; 8], usize),
-    /// Those of a particle of a mesh.
+    /// Neighbours of a particle of a mesh.
     Listed(&'a [u32]),
 }
 
@@ -60,7 +60,7 @@ impl Neighbors<'_> {
 /// For each particle of a mesh the particles at the other ends of its edges.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NeighborLists {
-    /// Where the list of each particle starts in `particles`; one more than there are particles.
+    /// Start of the list of each particle in `particles`; one more than there are particles.
     offsets: Vec<u32>,
     particles: Vec<u32>,
 }
@@ -89,7 +89,7 @@ impl NeighborLists {
         }
     }
 
-    /// The neighbours of one particle; none where the particle is out of range.
+    /// Neighbours of one particle; none where the particle is out of range.
     pub(super) fn of(&self, particle: u32) -> &[u32] {
         let i = particle as usize;
         match (self.offsets.get(i), self.offsets.get(i + 1)) {

@@ -61,7 +61,7 @@ impl Wavy {
         }
     }
 
-    /// Two accelerations to start from; what the scalar kernels do to them.
+    /// Two accelerations to start from, after the scalar kernels.
     fn one_by_one(&self, air: Air) -> [Points; 2] {
         let [mut drag, mut old] = [(); 2].map(|()| self.start());
         drag_and_lift(

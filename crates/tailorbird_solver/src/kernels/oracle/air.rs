@@ -1,4 +1,4 @@
-//! Air: what it does to a plate, to triangles, and how it blows.
+//! Air: its effect on a plate and on triangles, and breezes.
 
 use bevy_math::{DMat3, DVec3, Isometry3d, Quat, Vec3};
 use fearless_simd::Level;
@@ -48,7 +48,7 @@ prop_compose! {
     }
 }
 
-/// As far inside as this is strong: 3 t² − 2 t³ of what is inside by t times the falloff.
+/// 3 t² − 2 t³ at a depth of t times the falloff.
 fn strength(depth: f64, falloff: f64) -> f64 {
     if falloff == 0.0 {
         return f64::from(u8::from(depth >= 0.0));
@@ -70,7 +70,7 @@ proptest! {
         prop_assert!(is.distance(wanted) < 3e-5, "{is} {wanted}");
     }
 
-    /// What a triangle's air gives, shared by its corners: a third of its mass each.
+    /// A triangle's change of momentum is shared by its corners: a third of its mass each.
     #[test]
     fn triangles_share_what_the_air_gives_them(
         air in airs(), corners in [vector(1.0), vector(1.0), vector(1.0)], moved in [vector(0.1), vector(0.1), vector(0.1)],

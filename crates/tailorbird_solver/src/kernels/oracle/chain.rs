@@ -69,7 +69,7 @@ impl Case<'_> {
         (0..LANES).filter(used).map(of_lane).collect()
     }
 
-    /// Where the particles are after a batch.
+    /// Positions of the particles after a batch.
     fn solved(&self, batch: usize) -> Vec<DVec3> {
         let fabric = self.topology.fabric().expect("no grid");
         let mut position: Points = self.position.iter().copied().collect();
@@ -89,7 +89,7 @@ impl Case<'_> {
         position.iter().map(Vec3::as_dvec3).collect()
     }
 
-    /// Where the particles of a chain are afterwards; none where contacts and tension beyond what edges bear come together, of which the kernel
+    /// Positions of the particles of a chain afterwards; `None` where contacts and shared tension come together, for which the kernel
     /// solves an upper bound.
     fn wanted(&self, chain: &Chain) -> Option<Vec<DVec3>> {
         let particles = &chain.particles;

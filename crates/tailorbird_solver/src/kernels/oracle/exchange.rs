@@ -9,7 +9,7 @@ use crate::{
     topology::{Topology, test_meshes::delaunay},
 };
 
-/// Of a mesh x⁻ moves by −w c times the difference to each neighbour, c = σ · weight · the least of viscosity and what an edge stands.
+/// In a mesh x⁻ moves by −w c times the difference to each neighbour, c = σ · weight · min(viscosity, limit of the edge).
 #[test]
 fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let (positions, triangles) = delaunay(12, 3);
@@ -28,7 +28,7 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let middle = limits.sum::<f64>() / fabric.exchanges().len() as f64;
     // So far away that x⁻ is rounded to 6 · 10⁻⁵, and velocities are not.
     let far = Vec3::splat(1000.0);
-    // Where none, some and all of the edges stand no more.
+    // Viscosities at which none, some and all of the edges are at their limit.
     for viscosity in [1e-2, 1.0, 1e3].map(|part| (part * middle) as f32) {
         for rigid in [
             RigidMotion::default(),

@@ -1,4 +1,4 @@
-//! What holds constraints.
+//! Parity of the kernels of constraints.
 
 use bevy_math::{Vec2, Vec3};
 
@@ -59,7 +59,7 @@ fn lines() {
     }
 }
 
-/// What lines push particles with that carry a part of a body is all there: with what is told of it, momentum is kept.
+/// Lines with particles that carry parts of bodies report all impulses on these: with them, momentum is kept.
 #[test]
 fn lines_tell_what_they_press() {
     let line = LineStiffness {

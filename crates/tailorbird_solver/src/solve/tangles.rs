@@ -1,9 +1,9 @@
-//! What is looked at after the last substep of a step, and calmed.
+//! Checks after the last substep of a step, and damping of tangles.
 
 use fearless_simd::Level;
 
 use crate::{
-    effort::{Effort, Longest, Seen},
+    effort::{EdgeSurvey, Effort, Longest},
     grant::Threads,
     kernels::{
         lanes::{Shared, SharedPoints},
@@ -21,9 +21,9 @@ use crate::{
     },
 };
 
-/// Gives particles whose edges are squeezed as nothing ordinary squeezes them the motion of the whole. A cloth that nobody holds keeps
-/// its momentum.
-pub fn calm(
+/// Damps tangled particles: an edge compressed below 70 % of its rest length gets the rigid motion of the whole cloth. Conserves momentum
+/// if the cloth is free.
+pub fn damp(
     level: Level,
     topology: &Topology,
     allowed: f32,
@@ -151,7 +151,7 @@ fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]
     }
 }
 
-/// Gives all particles what is missing of the motion of the whole as it was.
+/// Adds to all particles the difference between the earlier rigid motion of the whole and the present one.
 fn give_back(was: RigidMotion, mass: &[f32], position: &Points, previous: &mut Points) {
     let is = RigidMotion::of_all(mass, position, previous);
     for i in 0..mass.len() {
