@@ -6,7 +6,7 @@ use bevy_math::Vec3;
 use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use tailorbird_cloth::normals::ClothShading;
 
-use super::{ClothMeshWrite, VertexBinding, follow::Follow, packed::Packed};
+use super::{ClothMeshWrite, ClothVertexBinding, follow::Follow, packed::Packed};
 use crate::drawn::ClothDrawnHolds;
 
 /// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
@@ -108,7 +108,7 @@ impl ClothMeshPart {
     }
 
     /// What a vertex of the mesh follows; none where there is no such vertex.
-    pub fn binding(&self, vertex: u32) -> Option<VertexBinding> {
+    pub fn binding(&self, vertex: u32) -> Option<ClothVertexBinding> {
         self.follow.bindings.get(vertex)
     }
 
@@ -117,7 +117,7 @@ impl ClothMeshPart {
     ///
     /// # Panics
     /// When it is drawn, where a particle does not exist.
-    pub fn bind(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+    pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         self.shows = None;
         self.follow.bind(vertex, binding)
     }

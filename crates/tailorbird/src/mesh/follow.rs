@@ -4,7 +4,7 @@ use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};
 
 use super::{
-    binding::{Bindings, VertexBinding},
+    binding::{Bindings, ClothVertexBinding},
     drawn::Drawn,
     interleave::{Interleaved, SheetVertices},
     interleaved::{VertexOrder, write_normals, write_positions, write_sheet},
@@ -67,7 +67,7 @@ impl Follow {
     }
 
     /// Binds a vertex to something else. Returns whether there is such a vertex.
-    pub fn bind(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+    pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         let bound = self.bindings.set(vertex, binding);
         if bound {
             self.in_order[0] = None;

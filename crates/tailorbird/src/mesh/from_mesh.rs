@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::{cloth::Cloth, error::ClothStatus};
 
-use super::MeshPins;
+use super::ClothMeshPins;
 
 /// Makes a cloth of the entity's `Mesh3d` or, if it has none, of all meshes below it, as soon as they are loaded: of a glTF scene, say. The
 /// [guide](super::garments) shows it.
@@ -28,11 +28,11 @@ pub struct ClothFromMesh {
     pub weld_distance: f32,
     /// Which vertices are pinned; a pin beside those of [`ClothPins`](tailorbird_cloth::pins::ClothPins). What is painted is kept in
     /// [`ClothWeights`](tailorbird_cloth::weights::ClothWeights).
-    pub pins: MeshPins,
+    pub pins: ClothMeshPins,
     /// Meshes below the entity that become the cloth.
-    pub parts: MeshParts,
+    pub parts: ClothMeshParts,
     /// Where its warp and weft run.
-    pub threads: MeshThreads,
+    pub threads: ClothMeshThreads,
     /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
     /// would tint the cloth.
     pub draw_paint: bool,
@@ -43,9 +43,9 @@ impl Default for ClothFromMesh {
     fn default() -> Self {
         Self {
             weld_distance: Cloth::WELD_DISTANCE,
-            pins: MeshPins::None,
-            parts: MeshParts::All,
-            threads: MeshThreads::Uvs,
+            pins: ClothMeshPins::None,
+            parts: ClothMeshParts::All,
+            threads: ClothMeshThreads::Uvs,
             draw_paint: false,
         }
     }
@@ -53,19 +53,19 @@ impl Default for ClothFromMesh {
 
 impl ClothFromMesh {
     /// With these pins.
-    pub fn with_pins(mut self, pins: MeshPins) -> Self {
+    pub fn with_pins(mut self, pins: ClothMeshPins) -> Self {
         self.pins = pins;
         self
     }
 
     /// Of the meshes with, or below entities with, one of these names.
     pub fn with_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.parts = MeshParts::Named(names.into_iter().map(Into::into).collect());
+        self.parts = ClothMeshParts::Named(names.into_iter().map(Into::into).collect());
         self
     }
 
     /// With warp and weft along these.
-    pub fn with_threads(mut self, threads: MeshThreads) -> Self {
+    pub fn with_threads(mut self, threads: ClothMeshThreads) -> Self {
         self.threads = threads;
         self
     }
@@ -80,7 +80,7 @@ impl ClothFromMesh {
 /// Where warp and weft of a mesh run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
-pub enum MeshThreads {
+pub enum ClothMeshThreads {
     /// The warp where u of the first texture coordinates is constant, the weft where v is: as in the pattern of a garment. In triangles
     /// without texture coordinates along the edges.
     #[default]
@@ -92,7 +92,7 @@ pub enum MeshThreads {
 /// Which of the meshes below an entity become its cloth.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
-pub enum MeshParts {
+pub enum ClothMeshParts {
     /// All but those below an entity with a `Cloth` or [`ClothFromMesh`] of its own.
     #[default]
     All,

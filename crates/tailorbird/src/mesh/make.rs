@@ -8,15 +8,15 @@ use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, skinning::SkinnedMesh};
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    pins::{ClothPin, ClothPins, PinSelection},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    pins::{ClothPin, ClothPins, ClothSelection},
     topology::repair::Repaired,
     weights::ClothWeights,
 };
 use tracing::warn;
 
 use super::{
-    ClothFromMesh, ClothMeshOf, MeshPins, MeshThreads,
+    ClothFromMesh, ClothMeshOf, ClothMeshPins, ClothMeshThreads,
     changes::Changes,
     parts::{Finder, Found, MeshSource, append},
     plain::texture_coordinates,
@@ -27,7 +27,7 @@ use super::{
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
     weld_distance: f32,
-    threads: MeshThreads,
+    threads: ClothMeshThreads,
     /// How many cloths had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
@@ -128,7 +128,7 @@ pub(super) fn cloth_from_mesh(
             &mut status,
             entity,
             &parallel_commands,
-            ErrorSource::Mesh,
+            ClothErrorSource::Mesh,
             errors,
         );
     }
@@ -223,7 +223,7 @@ fn make(
             return Ok(None);
         };
         append(mesh, part.to_cloth, &mut positions, &mut indices)?;
-        if from_mesh.threads == MeshThreads::Uvs {
+        if from_mesh.threads == ClothMeshThreads::Uvs {
             uvs.extend(texture_coordinates(mesh));
         }
         meshes.push(mesh);
@@ -265,7 +265,7 @@ fn held(
     positions: &[Vec3],
     indices: &[u32],
 ) -> Result<Option<(ClothWeights, ClothPin)>, ClothErrorKind> {
-    if matches!(from_mesh.pins, MeshPins::None) {
+    if matches!(from_mesh.pins, ClothMeshPins::None) {
         return Ok(None);
     }
     let threshold = from_mesh.pins.threshold()?;
@@ -275,7 +275,7 @@ fn held(
         weights: repaired.weights(&weights),
     };
     let particles = weights.above(threshold).collect();
-    let pin = ClothPin::new(PinSelection::Particles(particles));
+    let pin = ClothPin::new(ClothSelection::Particles(particles));
     Ok(Some((weights, pin)))
 }
 

@@ -27,14 +27,14 @@ mod tangents_wanted;
 mod vertices;
 mod write;
 
-pub use binding::VertexBinding;
+pub use binding::ClothVertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
 pub use cloth_mesh::{ClothMesh, ClothMeshOf, ClothMeshPart};
-pub use collider::ColliderFromMesh;
-pub use from_mesh::{ClothFromMesh, MeshParts, MeshThreads};
+pub use collider::ClothColliderFromMesh;
+pub use from_mesh::{ClothFromMesh, ClothMeshParts, ClothMeshThreads};
 pub use packed::ATTRIBUTE_PREVIOUS_POSITION;
-pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
+pub use pins::{ATTRIBUTE_CLOTH_PIN, ClothColorChannel, ClothMeshPins};
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};

@@ -9,11 +9,11 @@ use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
 use tailorbird_cloth::{
     cloth::Cloth,
-    error::{ClothErrorKind, ShapeError},
+    error::{ClothErrorKind, ClothShapeError},
 };
 
 use super::{
-    ClothFromMesh, ClothMeshOf, MeshParts,
+    ClothFromMesh, ClothMeshOf, ClothMeshParts,
     changes::SceneComplete,
     plain::{self, unusable},
 };
@@ -69,10 +69,14 @@ impl Finder<'_, '_> {
     ///
     /// # Errors
     /// When an asset did not load, or there are meshes below but none that is meant.
-    pub fn find(&self, entity: Entity, parts: &MeshParts) -> Result<Found, ClothErrorKind> {
+    pub fn find(&self, entity: Entity, parts: &ClothMeshParts) -> Result<Found, ClothErrorKind> {
         let (mut found, mut other_names, mut waits, mut scenes) =
             (Vec::new(), Vec::new(), false, 0);
-        let mut stack = vec![(entity, Affine3A::IDENTITY, matches!(parts, MeshParts::All))];
+        let mut stack = vec![(
+            entity,
+            Affine3A::IDENTITY,
+            matches!(parts, ClothMeshParts::All),
+        )];
         while let Some((node, to_cloth, mut meant)) = stack.pop() {
             let Ok((transform, name, mesh, part, scene, patch, complete, from_mesh, cloth)) =
                 self.nodes.get(node)
@@ -86,7 +90,7 @@ impl Finder<'_, '_> {
                 }
                 to_cloth *= transform.copied().unwrap_or_default().compute_affine();
             }
-            if let (MeshParts::Named(names), Some(name)) = (parts, name) {
+            if let (ClothMeshParts::Named(names), Some(name)) = (parts, name) {
                 meant |= names.iter().any(|wanted| wanted == name.as_str());
             }
             let children = self.children.get(node).ok();
@@ -198,12 +202,12 @@ pub(super) fn append(
     }
     let own = &mut indices[start..];
     if !own.len().is_multiple_of(3) {
-        return Err(ShapeError::IndexCount { value: own.len() }.into());
+        return Err(ClothShapeError::IndexCount { value: own.len() }.into());
     }
     let vertices = places.len();
     for (at, index) in own.iter_mut().enumerate() {
         if *index as usize >= vertices {
-            return Err(ShapeError::IndexOutOfRange {
+            return Err(ClothShapeError::IndexOutOfRange {
                 at,
                 value: *index,
                 vertices,
