@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-use super::follow::Drawn;
+use super::drawn::Drawn;
 
 /// What a vertex of a mesh follows. Particles are in storage order.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,41 +2,20 @@
 
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};
-use tailorbird_cloth::{normals::ClothNormals, particles::ClothParticles};
 
 use super::{
     binding::{Bindings, ClothVertexBinding},
+    drawn::Drawn,
     interleave::{Interleaved, SheetVertices},
     interleaved::{VertexOrder, write_normals, write_positions, write_sheet},
     packed::Packed,
     tangents::{Surface, Tangents},
 };
-use crate::drawn::ClothDrawnHolds;
 
 /// Vertices that a task has at least.
 pub(super) const PIECE: usize = 8192;
 
-/// State of a cloth that vertices follow.
-#[derive(Clone, Copy)]
-pub(super) struct Drawn<'a> {
-    pub particles: &'a ClothParticles,
-    pub normals: &'a ClothNormals,
-    pub holds: &'a ClothDrawnHolds,
-    /// The part of the way between the last two steps, 0 to 1.
-    pub fraction: f32,
-    /// Of the cloth's entity.
-    pub scale: Vec3,
-}
-
-impl Drawn<'_> {
-    /// Returns whether normals in the cloth's frame are those in its space.
-    fn is_scaled_evenly(&self) -> bool {
-        let Vec3 { x, y, z } = self.scale;
-        x == y && y == z && x > 0.0
-    }
-}
-
-/// Particle and normal that each vertex of a mesh follows.
+/// Which particle and which normal each vertex of a mesh follows.
 pub(super) struct Follow {
     pub bindings: Bindings,
     /// For each vertex its normal: of a particle when smooth, of a triangle when flat.

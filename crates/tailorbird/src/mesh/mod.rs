@@ -3,7 +3,9 @@
 mod binding;
 mod build;
 mod changes;
+mod cloth_mesh;
 mod collider;
+mod drawn;
 mod follow;
 mod from_mesh;
 pub mod garments;
@@ -11,6 +13,7 @@ mod interleave;
 #[cfg(test)]
 mod interleave_tests;
 mod interleaved;
+mod make;
 mod packed;
 mod parts;
 mod pins;
@@ -27,12 +30,11 @@ mod write;
 pub use binding::ClothVertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
-pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
+pub use cloth_mesh::{ClothMesh, ClothMeshOf, ClothMeshPart};
 pub use collider::ClothColliderFromMesh;
-pub use from_mesh::{ClothFromMesh, ClothMeshThreads};
-pub use parts::ClothMeshParts;
+pub use from_mesh::{ClothFromMesh, ClothMeshParts, ClothMeshThreads};
+pub use packed::ATTRIBUTE_PREVIOUS_POSITION;
 pub use pins::{ATTRIBUTE_CLOTH_PIN, ClothColorChannel, ClothMeshPins};
-pub use previous::ATTRIBUTE_PREVIOUS_POSITION;
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};
@@ -126,7 +128,7 @@ impl Plugin for ClothMeshPlugin {
             .add_observer(changes::note_ready)
             .add_systems(
                 PreUpdate,
-                from_mesh::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),
+                make::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),
             )
             .add_systems(
                 PostUpdate,

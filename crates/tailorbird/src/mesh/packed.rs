@@ -1,8 +1,13 @@
 //! The vertices of a mesh as the renderer has them: all attributes of a vertex side by side.
 
-use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
+use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues, VertexFormat};
 
-use super::ATTRIBUTE_PREVIOUS_POSITION;
+/// Where a vertex was in the frame before, in the space of its mesh \[m\].
+pub const ATTRIBUTE_PREVIOUS_POSITION: MeshVertexAttribute = MeshVertexAttribute::new(
+    "Vertex_Cloth_Previous_Position",
+    0x7a11_0b1d_c107_0002,
+    VertexFormat::Float32x3,
+);
 
 /// Numbers of a position and of a normal, and of a tangent.
 const VECTOR: usize = 3;

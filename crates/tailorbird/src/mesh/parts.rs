@@ -4,7 +4,6 @@ use bevy_asset::{AssetServer, Assets, Handle, LoadState, UntypedAssetId};
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_math::{Affine3A, Vec3};
 use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology};
-use bevy_reflect::prelude::*;
 use bevy_scene::ScenePatchInstance;
 use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
@@ -14,21 +13,10 @@ use tailorbird_cloth::{
 };
 
 use super::{
-    ClothFromMesh, ClothMeshOf,
+    ClothFromMesh, ClothMeshOf, ClothMeshParts,
     changes::SceneComplete,
     plain::{self, unusable},
 };
-
-/// Meshes below an entity that become its cloth.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
-#[non_exhaustive]
-pub enum ClothMeshParts {
-    /// All but those below an entity with a `Cloth` or [`ClothFromMesh`] of its own.
-    #[default]
-    All,
-    /// Of these those that have, or lie below an entity that has, one of these [`Name`]s: in a glTF scene, of nodes.
-    Named(Vec<String>),
-}
 
 /// A mesh that becomes a part of a cloth.
 #[derive(Clone, Debug)]

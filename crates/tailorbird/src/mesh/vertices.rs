@@ -5,9 +5,7 @@ use bevy_math::{UVec2, Vec2};
 use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
 use tailorbird_cloth::{cloth::ClothShape, normals::ClothShading, topology::Topology};
 
-use super::{
-    build::ClothMeshPart, follow::Follow, parts::MeshSource, plain::plain, tangents::Tangents,
-};
+use super::{ClothMeshPart, follow::Follow, parts::MeshSource, plain::plain, tangents::Tangents};
 
 /// The vertices of a mesh in the making, in the order of its source.
 pub(super) struct Vertices {

@@ -23,7 +23,8 @@ use tracing::warn;
 
 use super::{
     ClothMesh, ClothMeshPart, ClothMeshSettings, ClothMeshWrite, ClothUnseen,
-    follow::{Drawn, PIECE, share},
+    drawn::Drawn,
+    follow::{PIECE, share},
     packed::Packed,
     slab::{VertexUpload, VertexUploads},
 };

@@ -5,11 +5,9 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::contact::colliders::Colliders;
 
-#[cfg(doc)]
-use super::snapshot_colliders;
 use super::{ClothColliderBody, solids::Solids};
 
-/// The scale of a collider. Written by [`snapshot_colliders`] alone.
+/// The scale of a collider. Written by [`snapshot_colliders`](super::snapshot_colliders) alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothColliderState {
@@ -31,7 +29,7 @@ impl ClothColliderState {
     }
 }
 
-/// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
+/// The colliders of this step with their motion. Written by [`snapshot_colliders`](super::snapshot_colliders) alone.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ClothColliders {
     /// As the solver has them.

@@ -3,8 +3,6 @@
 use bevy_ecs::prelude::*;
 use tailorbird_solver::step::{CALM, INTEGRATE, SOLVE};
 
-#[cfg(doc)]
-use super::ClothSolver;
 use crate::{
     cloth::Cloth,
     collider::ClothColliders,
@@ -20,9 +18,9 @@ pub fn verlet_step(
     run_stage(INTEGRATE, &step, &colliders, &mut cloths);
 }
 
-/// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
+/// Holds the constraints, as the cloth's [`ClothSolver`](super::ClothSolver) says, [`ClothStep::iterations`] times.
 ///
-/// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
+/// [`ClothSolver::GaussSeidel`](super::ClothSolver::GaussSeidel) goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
 /// relaxation, the others as XPBD.
 pub fn solve_constraints(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
@@ -31,7 +29,7 @@ pub fn solve_constraints(
     run_stage(SOLVE, &step, &colliders, &mut cloths);
 }
 
-/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
+/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`](super::ClothSolver::Chains).
 pub fn calm_knots(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
     mut cloths: Query<ClothStages, With<Cloth>>,
