@@ -13,19 +13,19 @@ use crate::{
     substep::Substep,
 };
 
-/// A stage of a substep: what it does to a cloth.
+/// A stage of a substep: a change of a cloth.
 pub type Stage = fn(&Substep, &Colliders, &mut Cloth);
 
 /// The stages of a substep, in their order.
 pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, CALM];
 
-/// Moves the frame, and with it what is held by others.
+/// Moves the frame, and with it the particles that others hold.
 pub const ADVANCE: Stage = |substep, _, cloth| advance(substep, cloth);
 
 /// Moves particles by inertia, gravity, wind and forces.
 pub const INTEGRATE: Stage = |substep, _, cloth| solve::integrate(substep, cloth);
 
-/// Pushes particles out of colliders, and notes what they touch.
+/// Pushes particles out of colliders, and notes contacts.
 pub const APPROACH: Stage = |substep, colliders, cloth| colliders.approach(substep, cloth);
 
 /// Holds the constraints.
@@ -34,7 +34,7 @@ pub const SOLVE: Stage = |substep, _, cloth| solve::solve(substep, cloth);
 /// Keeps particles out of colliders, with friction.
 pub const COLLIDE: Stage = |substep, colliders, cloth| colliders.collide_all(substep, cloth);
 
-/// Damps what is tangled, at the end of the last substep, and looks at what the cloth is asked for.
+/// Damps tangles at the end of the last substep, and measures strain.
 pub const CALM: Stage = |substep, _, cloth| solve::calm(substep, cloth);
 
 /// Takes a group of cloths through all substeps of a step, side by side: all are in the same stage of the same substep. `nth` gives the
@@ -55,7 +55,7 @@ pub fn step<'a>(
     }
 }
 
-/// What a step made of a cloth.
+/// Result of a step for a cloth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// The part of the edges that is longer than the fabric lets them be, because more is asked of it than it has [-].

@@ -1,4 +1,4 @@
-//! What is computed once from the rest shape: particles, triangles, constraints. Immutable, shared.
+//! The topology of a cloth, computed once from its rest shape: particles, triangles, constraints. Immutable, shared.
 
 pub mod alive;
 pub mod chains;
@@ -46,7 +46,7 @@ use repair::TriangleCopy;
 use report::ClothMeshReport;
 use triangles::Triangles;
 
-/// What is computed once from the rest shape. Particles are in storage order throughout.
+/// Topology of a cloth, computed once from its rest shape. Particles are in storage order throughout.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     /// Equal for equal shapes at equal scales, in every process; 0 is the empty one. Everything that is derived from a topology is
@@ -54,13 +54,13 @@ pub struct Topology {
     pub revision: u64,
     /// The order in which the particles are stored.
     pub order: ParticleOrder,
-    /// Where the particles lie at rest, in the cloth's frame, scale included \[m\].
+    /// Rest positions in the cloth's frame, scale included \[m\].
     pub rest_positions: Vec<Vec3>,
-    /// How they lie, and what joins them.
+    /// Layout of the particles: a sheet or a mesh.
     pub layout: Layout,
-    /// What resists bending, but in a flat lattice.
+    /// Hinges, which resist bending; none in a flat sheet, whose lines do.
     pub hinges: HingeConstraints,
-    /// Whether the particles lie in one plane, nowhere on top of each other.
+    /// True if the particles lie in one plane, nowhere on top of each other.
     pub flat: bool,
     /// The triangles of a mesh; none of a grid.
     pub triangles: Vec<[u32; 3]>,
@@ -86,9 +86,9 @@ pub struct Topology {
     constraints: OnceLock<DistanceConstraints>,
     /// Made when they are asked for; never for a lattice.
     neighbors: OnceLock<NeighborLists>,
-    /// What was left out.
+    /// Errors of the parts that were left out.
     pub dropped: Vec<ClothShapeError>,
-    /// What was found in a mesh; nothing in a grid.
+    /// Findings in a mesh; empty for a grid.
     pub report: ClothMeshReport,
 }
 
@@ -96,7 +96,7 @@ impl Topology {
     /// Builds the topology of a shape that is scaled by `scale`.
     ///
     /// # Errors
-    /// What is wrong with the shape or the scale. What is wrong with a mesh and can be repaired is, and is told in
+    /// An invalid shape or scale. Faults of a mesh that can be repaired are, and are told in
     /// [`Topology::report`]; triangles that are left out are listed in [`Topology::dropped`] as well.
     pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ClothShapeError> {
         shape.check()?;
@@ -157,7 +157,7 @@ impl Topology {
         self.grid_lattice().map(size)
     }
 
-    /// Whether the shape is a grid: then vertices and particles are the same.
+    /// Returns whether the shape is a grid: then vertices and particles are the same.
     pub fn is_grid(&self) -> bool {
         self.grid_lattice().is_some()
     }
@@ -232,7 +232,7 @@ impl Topology {
         (0..self.particles()).map(of)
     }
 
-    /// The springs of the classic solver, in batches that share no particle. They are made when they are asked for first.
+    /// Springs of the classic solver, in batches that share no particle. They are made at the first call.
     pub fn constraints(&self) -> &DistanceConstraints {
         self.constraints.get_or_init(|| match self.grid() {
             Some(size) => grid::constraints(size.x, size.y, &self.rest_positions),
@@ -240,7 +240,7 @@ impl Topology {
         })
     }
 
-    /// How many springs [`Self::constraints`] has. For a grid they are not made.
+    /// Number of springs of [`Self::constraints`]. For a grid they are not made.
     pub fn constraint_count(&self) -> usize {
         match self.grid() {
             Some(size) => grid::constraint_count(size.x as usize, size.y as usize),
@@ -259,7 +259,7 @@ impl Topology {
         Neighbors::Listed(lists.of(particle))
     }
 
-    /// What it takes on the heap by now, \[byte\].
+    /// Memory on the heap by now \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.rest_positions)
             + heap(&self.triangles)
