@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bevy_app::{App, FixedPostUpdate, FixedUpdate, TaskPoolPlugin};
+use bevy_app::{App, FixedPostUpdate, FixedUpdate, TaskPoolPlugin, Update};
 use bevy_math::Vec3;
 use bevy_math::{UVec2, Vec2};
 use bevy_time::{Fixed, Real, Time, TimePlugin, TimeUpdateStrategy, Virtual};
@@ -27,6 +27,7 @@ fn app(scene: &dyn Fn(&mut World)) -> App {
     app.update();
     app.insert_resource(TimeUpdateStrategy::ManualDuration(step))
         .init_resource::<Played>()
+        .add_systems(Update, play_between_steps)
         .add_systems(FixedUpdate, (play, go, turn, sink).chain());
     scene(app.world_mut());
     app
@@ -39,6 +40,32 @@ struct Played(u32);
 /// What the game does in this step.
 #[derive(Component, Clone, Copy)]
 struct Plays(fn(u32, EntityWorldMut));
+
+/// Moves the targets of motion constraints along in each frame, where [`Plays`] would in each step.
+#[derive(Component, Clone, Copy)]
+struct PlaysBetweenSteps(fn(u32, EntityWorldMut));
+
+fn play_between_steps(world: &mut World) {
+    let step = world.resource::<Played>().0;
+    let mut players = world.query::<(Entity, &PlaysBetweenSteps)>();
+    let players: Vec<_> = players.iter(world).map(|(e, plays)| (e, *plays)).collect();
+    for (entity, plays) in players {
+        plays.0(step, world.entity_mut(entity));
+    }
+}
+
+/// Puts the targets of a square on a wave.
+fn wave(step: u32, mut cloth: EntityWorldMut) {
+    let places = (0..576).map(|k| {
+        let (x, y) = (k % 24, k / 24);
+        let place = Vec3::new(x as f32, -(y as f32), 0.0) * (2.0 / 23.0);
+        place + Vec3::Z * (0.1 * (0.1 * (step + k) as f32).sin())
+    });
+    let places: Vec<Vec3> = places.collect();
+    if let Some(mut targets) = cloth.get_mut::<ClothMotionTargets>() {
+        targets.set_positions(places);
+    }
+}
 
 fn play(world: &mut World) {
     let mut played = world.resource_mut::<Played>();
@@ -131,6 +158,7 @@ fn bits(app: &mut App, steps: usize) -> Vec<(Vec<bool>, Vec<u32>)> {
 /// What the game itself puts back: what it wrote, and the time.
 struct Game {
     places: Vec<(Entity, Transform, GlobalTransform)>,
+    targets: Vec<(Entity, ClothMotionTargets)>,
     times: (Time, Time<Virtual>, Time<Fixed>, Time<Real>),
     played: Played,
     sinks: Option<Sinks>,
@@ -144,8 +172,12 @@ impl Game {
         let places = places
             .iter(world)
             .map(|(e, place, global)| (e, *place, *global));
+        let places = places.collect();
+        let mut targets = world.query::<(Entity, &ClothMotionTargets)>();
+        let targets = targets.iter(world).map(|(e, targets)| (e, targets.clone()));
         Self {
-            places: places.collect(),
+            places,
+            targets: targets.collect(),
             times: (
                 *world.resource(),
                 *world.resource(),
@@ -162,6 +194,9 @@ impl Game {
     fn restore(&self, world: &mut World) {
         for (entity, place, global) in &self.places {
             world.entity_mut(*entity).insert((*place, *global));
+        }
+        for (entity, targets) in &self.targets {
+            world.entity_mut(*entity).insert(targets.clone());
         }
         let (time, of_game, fixed, real) = self.times;
         world.insert_resource(time);
@@ -195,7 +230,7 @@ fn rewrite<C: Component<Mutability = Mutable>>(world: &mut World) {
         .for_each(|mut value| value.set_changed());
 }
 
-fn scenes() -> [(&'static str, fn(&mut World)); 13] {
+fn scenes() -> [(&'static str, fn(&mut World)); 15] {
     fn square() -> (Cloth, ClothMaterial) {
         let cloth = Cloth::grid(Vec2::splat(2.0), UVec2::splat(24)).centered();
         (cloth, ClothMaterial::cotton())
@@ -357,6 +392,18 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                         }
                     });
                 }),
+            ));
+        }),
+        ("targets that a step moves", |world| {
+            let cloth = (square(), ClothMotionConstraints::at_most(0.05));
+            world.spawn((cloth, ClothMotionTargets::default(), Plays(wave)));
+        }),
+        ("targets that a frame moves", |world| {
+            let cloth = (square(), ClothMotionConstraints::at_most(0.05));
+            world.spawn((
+                cloth,
+                ClothMotionTargets::default(),
+                PlaysBetweenSteps(wave),
             ));
         }),
         ("a mesh of any triangles in a zone, seen no more", |world| {
