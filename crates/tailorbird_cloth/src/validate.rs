@@ -18,7 +18,7 @@ use crate::{
 pub struct ClothReset {
     /// The cloth.
     pub entity: Entity,
-    /// Why.
+    /// Reason.
     pub reason: ResetReason,
 }
 
@@ -42,7 +42,7 @@ pub fn guard_finite(
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`guard_finite`] does for one cloth.
+    /// Runs [`guard_finite`] for one cloth.
     pub(crate) fn guard(&mut self, level: Level, commands: &ParallelCommands) {
         let Report {
             strained,

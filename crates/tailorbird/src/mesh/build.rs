@@ -116,7 +116,7 @@ impl ClothMeshPart {
         self.follow.bindings.particles()
     }
 
-    /// What a vertex of the mesh follows; none where there is no such vertex.
+    /// Binding of a vertex of the mesh; `None` if there is no such vertex.
     pub fn binding(&self, vertex: u32) -> Option<VertexBinding> {
         self.follow.bindings.get(vertex)
     }

@@ -47,10 +47,10 @@ pub struct ClothFromMesh {
     pub pins: MeshPins,
     /// Meshes below the entity that become the cloth.
     pub parts: MeshParts,
-    /// Where its warp and weft run.
+    /// Directions of its warp and weft.
     pub threads: MeshThreads,
-    /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
-    /// would tint the cloth.
+    /// True if the colours that [`Self::pins`] reads from the vertices are drawn as well. Paint is data: colours that name pins would tint
+    /// the cloth.
     pub draw_paint: bool,
 }
 
@@ -93,7 +93,7 @@ impl ClothFromMesh {
     }
 }
 
-/// Where warp and weft of a mesh run.
+/// Directions of the warp and weft of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum MeshThreads {
@@ -111,7 +111,7 @@ pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
     weld_distance: f32,
     threads: MeshThreads,
-    /// How many cloths had been made when this one was: it tells this one from those of the same shape.
+    /// Number of cloths that had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
     pub left_out: Option<MeshVertexAttribute>,

@@ -123,7 +123,7 @@ impl WindZone {
     }
 }
 
-/// Where a zone of wind blows, in the entity's axes.
+/// Region in which a wind blows, in the entity's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -164,7 +164,7 @@ impl WindShape {
     }
 }
 
-/// How a wind of this shape meets a ball: not at all (`None`), in the same way everywhere, or not.
+/// Overlap of a wind of this shape with a ball: none (`None`), the same wind everywhere, or a varying one.
 pub(super) fn is_whole_in(
     shape: WindRegion,
     falloff: f32,

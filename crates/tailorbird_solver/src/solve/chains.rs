@@ -299,7 +299,7 @@ pub fn integrate(
             let area = lattice.spacing.x * lattice.spacing.y;
             // ν = c L²/(4 h) on a square grid.
             let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
-            let motion = Motion {
+            let motion = SheetMotion {
                 sheet: Sheet {
                     columns: lattice.columns as usize,
                     rows: lattice.rows as usize,

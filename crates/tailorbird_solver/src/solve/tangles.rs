@@ -52,20 +52,20 @@ pub fn damp(
         Layout::Sheet(SheetLayout { lattice, .. }) => {
             let sheet = bare(lattice, position, inv_mass);
             let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
-            // What carries bodies takes more substeps for them already, and would throw them.
+            // A cloth that carries bodies takes more substeps for them already, and would throw them.
             if couplings.is_empty() {
                 let side = lattice.columns.max(lattice.rows) as f32;
                 let longest = Longest {
                     times: survey.longest,
                     part: survey.longest / side,
                 };
-                let seen = Seen {
+                let edges = EdgeSurvey {
                     strained: survey.strained,
                     longest,
                     granted: grant.is_much(),
                     is_mesh: false,
                 };
-                effort.see(seen, *touch);
+                effort.update(edges, *touch);
             } else {
                 *effort = Effort::default();
             }
@@ -105,13 +105,13 @@ pub fn damp(
                     times: far.sqrt(),
                     part: farthest.sqrt() / fabric.size(),
                 };
-                let seen = Seen {
+                let edges = EdgeSurvey {
                     strained: part,
                     longest,
                     granted: !grant.is_empty(),
                     is_mesh: true,
                 };
-                effort.see(seen, *touch);
+                effort.update(edges, *touch);
             } else {
                 *effort = Effort::default();
             }
