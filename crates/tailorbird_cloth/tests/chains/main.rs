@@ -15,6 +15,7 @@ mod memory;
 mod meshes;
 mod scene;
 mod stretch;
+mod substeps;
 
 #[path = "../../../tailorbird_solver/src/topology/test_meshes.rs"]
 mod test_meshes;

@@ -129,8 +129,8 @@ fn ball() -> Colliders {
     }
 }
 
-/// Takes cloths through a step.
-fn go(group: &mut [&mut Owned]) {
+/// Takes cloths through a step among colliders.
+fn go(colliders: &Colliders, group: &mut [&mut Owned]) {
     let count = 8;
     let nth = |index| Substep {
         level: Level::new(),
@@ -146,7 +146,7 @@ fn go(group: &mut [&mut Owned]) {
         owned.particles.begin_step();
     }
     let mut cloths: Vec<Cloth> = group.iter_mut().map(|owned| owned.cloth()).collect();
-    step(count, nth, &ball(), &mut cloths);
+    step(count, nth, colliders, &mut cloths);
 }
 
 #[test]
@@ -154,9 +154,9 @@ fn cloths_of_a_group_that_do_not_meet_do_as_each_alone() {
     let (mut a, mut b) = (Owned::sheet(17), Owned::sheet(12));
     let (mut alone_a, mut alone_b) = (a.clone(), b.clone());
     for _ in 0..60 {
-        go(&mut [&mut a, &mut b]);
-        go(&mut [&mut alone_b]);
-        go(&mut [&mut alone_a]);
+        go(&ball(), &mut [&mut a, &mut b]);
+        go(&ball(), &mut [&mut alone_b]);
+        go(&ball(), &mut [&mut alone_a]);
     }
     assert!(a.bits() == alone_a.bits() && b.bits() == alone_b.bits());
 }
@@ -187,8 +187,8 @@ fn a_particle_that_is_split_off_falls_by_itself() {
         );
         let (start, steps) = (torn.particles.state.position.get(last), 20);
         for _ in 0..steps {
-            go(&mut [&mut whole]);
-            go(&mut [&mut torn]);
+            go(&Colliders::default(), &mut [&mut whole]);
+            go(&Colliders::default(), &mut [&mut torn]);
         }
         let [whole, torn] = [whole, torn].map(|owned| owned.particles.state.position);
         let away = |i: usize| whole.get(i).distance(torn.get(i));
