@@ -16,17 +16,17 @@ fn main() {
     App::new()
         .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
         .insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)))
-        .insert_resource(Wind {
-            gusts: Gusts {
+        .insert_resource(ClothWind {
+            gusts: ClothGusts {
                 strength: 0.5,
                 period: 2.5,
             },
-            turbulence: Turbulence {
+            turbulence: ClothTurbulence {
                 speed: 0.7,
                 scale: 0.9,
                 ..default()
             },
-            ..Wind::steady(WIND)
+            ..ClothWind::steady(WIND)
         })
         .add_systems(Startup, setup)
         .add_systems(Update, change_wind)
@@ -123,7 +123,7 @@ fn sail(time: Res<Time>, step: Res<Time<Fixed>>, mut boat: Single<&mut Transform
     **boat = Transform::from_xyz(0.0, 0.08 * (1.7 * t).sin(), 0.0).with_rotation(roll * pitch);
 }
 
-fn change_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<Wind>) {
+fn change_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<ClothWind>) {
     if keys.just_pressed(KeyCode::Space) {
         wind.velocity = WIND - wind.velocity;
     }

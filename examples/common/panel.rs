@@ -165,8 +165,12 @@ fn air(ui: &mut Ui, settings: &mut DemoSettings) {
     ui.add(Slider::new(&mut swirls.speed, 0.0..=5.0).text("turbulence [m/s]"));
     ui.add(Slider::new(&mut swirls.scale, 0.2..=5.0).text("largest eddies [m]"));
     ui.horizontal(|ui| {
-        ui.radio_value(&mut wind.model, WindModel::Aerodynamic, "drag and lift");
-        ui.radio_value(&mut wind.model, WindModel::Classic, "classic");
+        ui.radio_value(
+            &mut wind.model,
+            ClothWindModel::Aerodynamic,
+            "drag and lift",
+        );
+        ui.radio_value(&mut wind.model, ClothWindModel::Classic, "classic");
     });
 }
 

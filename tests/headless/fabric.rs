@@ -6,7 +6,7 @@ use bevy::{
     image::{CompressedImageFormats, ImageLoader},
     prelude::*,
 };
-use tailorbird::{fabric::FabricLibrary, prelude::*};
+use tailorbird::{fabric::ClothFabricLibrary, prelude::*};
 
 use crate::game::*;
 
@@ -41,7 +41,7 @@ fn material(app: &App, cloth: Entity) -> &StandardMaterial {
 fn wait(app: &mut App) {
     for _ in 0..2000 {
         app.update();
-        if app.world().resource::<FabricLibrary>().is_ready() {
+        if app.world().resource::<ClothFabricLibrary>().is_ready() {
             return;
         }
         thread::sleep(Duration::from_millis(5));
@@ -61,7 +61,7 @@ fn every_fabric_has_textures(textures: ClothFabricPlugin, size: u32) {
     let mut app = dressed_by(textures);
     let cloths = ClothFabric::ALL.map(|fabric| flag(&mut app, ClothLook::new(fabric)));
     app.update();
-    assert!(!app.world().resource::<FabricLibrary>().is_ready());
+    assert!(!app.world().resource::<ClothFabricLibrary>().is_ready());
     wait(&mut app);
     for (cloth, fabric) in cloths.into_iter().zip(ClothFabric::ALL) {
         let material = material(&app, cloth);

@@ -11,7 +11,7 @@ use bevy::{
     time::TimeUpdateStrategy,
 };
 use tailorbird::{
-    mesh::{ClothMesh, VertexBinding},
+    mesh::{ClothMesh, ClothVertexBinding},
     prelude::*,
 };
 
@@ -336,7 +336,7 @@ fn a_vertex_that_is_bound_to_a_triangle_is_drawn_on_it() {
         each.map(|(i, weight)| weight * places[*i as usize]).sum()
     };
     let before = positions(&app, cloth);
-    bind(&mut app, VertexBinding::Triangle { corners, weights });
+    bind(&mut app, ClothVertexBinding::Triangle { corners, weights });
     app.world_mut().resource_mut::<ClothSettings>().paused = true;
     for scale in [1.0, 2.0] {
         app.world_mut()
@@ -349,7 +349,7 @@ fn a_vertex_that_is_bound_to_a_triangle_is_drawn_on_it() {
         assert!(directions[40].distance(mean(&directions).normalize()) < 1e-5);
         assert!(places[39].distance(before[39]) < 0.1 && places[41].distance(before[41]) < 0.1);
     }
-    bind(&mut app, VertexBinding::Particle(40));
+    bind(&mut app, ClothVertexBinding::Particle(40));
     app.world_mut()
         .get_mut::<Transform>(cloth)
         .expect("one")

@@ -45,7 +45,7 @@ impl Sim {
     /// Cloth without air.
     pub fn vacuum() -> Self {
         let mut sim = Self::new();
-        sim.app.insert_resource(Wind::vacuum());
+        sim.app.insert_resource(ClothWind::vacuum());
         sim
     }
 

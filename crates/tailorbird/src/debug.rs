@@ -49,9 +49,9 @@ pub struct ClothGizmos {
     /// The box around each cloth.
     pub bounds: bool,
     /// The shape of each [`ClothCollider`], without its margin; of a half-space a square of 10 m. What is in
-    /// [`ExternalColliders`] is for its engine to draw.
+    /// [`ClothExternalColliders`] is for its engine to draw.
     pub colliders: bool,
-    /// The border of each [`WindZone`], paler where it begins to blow at full strength, and arrows for the air in them and around
+    /// The border of each [`ClothWindZone`], paler where it begins to blow at full strength, and arrows for the air in them and around
     /// cloths, 4 cm for 1 m/s.
     pub wind: bool,
 }

@@ -227,7 +227,7 @@ fn pin(
                 .filter(|i| (*i as usize) < particles.len() && !particles.is_pinned(*i as usize))
                 .collect();
             pins.pins.extend(held.iter().map(|&particle| ClothPin {
-                author: PinAuthor::User,
+                author: ClothPinAuthor::User,
                 ..ClothPin::at(particle, particles.position(particle as usize))
             }));
             commands.trigger(ClothPinned {

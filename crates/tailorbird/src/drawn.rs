@@ -13,10 +13,10 @@
 //! # use bevy_math::Vec3;
 //! # use bevy_transform::components::GlobalTransform;
 //! # use tailorbird::{drawn::ClothDrawnHolds, prelude::*};
-//! # use tailorbird_cloth::attachment::AttachedParticles;
+//! # use tailorbird_cloth::attachment::ClothAttachedParticles;
 //! fn write_mesh(
 //!     mut cloths: Query<(
-//!         &GlobalTransform, &ClothTopology, &ClothParticles, &AttachedParticles, &mut ClothDrawnHolds,
+//!         &GlobalTransform, &ClothTopology, &ClothParticles, &ClothAttachedParticles, &mut ClothDrawnHolds,
 //!     )>,
 //!     places: Query<&GlobalTransform>,
 //! ) {
@@ -38,7 +38,7 @@ use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles,
+    attachment::ClothAttachedParticles, frame::split_mirrored, particles::ClothParticles,
     topology::Topology,
 };
 use tailorbird_solver::points::Points;
@@ -114,7 +114,7 @@ impl ClothDrawnHolds {
         &mut self,
         topology: &Topology,
         particles: &ClothParticles,
-        attached: &AttachedParticles,
+        attached: &ClothAttachedParticles,
         place: &GlobalTransform,
         fraction: f32,
         now: impl Fn(Entity) -> Option<GlobalTransform>,
@@ -196,7 +196,7 @@ impl ClothDrawnHolds {
         &mut self,
         topology: &Topology,
         particles: &ClothParticles,
-        attached: &AttachedParticles,
+        attached: &ClothAttachedParticles,
     ) {
         self.targets.clear();
         self.held.clear();

@@ -3,7 +3,7 @@
 //!
 //! Users take `tailorbird_avian` or `tailorbird_rapier`, which re-export what they need of this. A bridge to another engine is
 //! two systems of a hundred lines: one in [`ClothBridgeSystems::Collect`] that pushes the engine's colliders to
-//! [`ExternalColliders`](tailorbird_cloth::collider::ExternalColliders), one in [`ClothBridgeSystems::Apply`] that gives
+//! [`ClothExternalColliders`](tailorbird_cloth::collider::ClothExternalColliders), one in [`ClothBridgeSystems::Apply`] that gives
 //! bodies what [`ClothReactions`](tailorbird_cloth::collider::ClothReactions) says.
 
 mod load;

@@ -73,7 +73,7 @@ pub struct ClothBoxes<'w, 's> {
             Ref<'static, ClothParticles>,
             &'static ClothFrame,
             &'static ClothBounds,
-            &'static ClothRest,
+            &'static ClothSleepState,
         ),
         With<Cloth>,
     >,

@@ -2,13 +2,13 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use tailorbird_cloth::{collider::ClothReaction, sampling::HopDetector};
+use tailorbird_cloth::{collider::ClothReaction, sampling::ClothHopDetector};
 
 /// Pose of an engine's collider after the last step, in the world, with its displacement by cloth.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct TrackedPose {
     pose: Option<Isometry3d>,
-    hops: HopDetector,
+    hops: ClothHopDetector,
 }
 
 impl TrackedPose {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use bevy_math::Isometry3d;
-use tailorbird_cloth::collider::ColliderShape;
+use tailorbird_cloth::collider::ClothColliderShape;
 
 /// Steps without a use after which a conversion is forgotten.
 const FORGET_AFTER: u64 = 128;
@@ -14,14 +14,14 @@ pub struct Piece {
     /// Pose in the whole \[m\].
     pub at: Isometry3d,
     /// Shape of the part.
-    pub shape: ColliderShape,
+    pub shape: ClothColliderShape,
     /// Distance by which its surface is rounded off beyond the shape \[m\].
     pub margin: f32,
 }
 
 impl Piece {
     /// A shape at a place.
-    pub fn new(at: Isometry3d, shape: ColliderShape) -> Self {
+    pub fn new(at: Isometry3d, shape: ClothColliderShape) -> Self {
         Self {
             at,
             shape,
@@ -107,7 +107,7 @@ mod tests {
             cache.begin_step();
             let pieces = cache.pieces(Arc::as_ptr(&shape) as usize, &shape, || {
                 count += 1;
-                let shape = ColliderShape::Sphere { radius: *shape };
+                let shape = ClothColliderShape::Sphere { radius: *shape };
                 vec![Piece::new(Isometry3d::IDENTITY, shape)]
             });
             assert_eq!(pieces.len(), 1);

@@ -134,7 +134,7 @@ impl World {
             gravity,
             ..ClothSettings::default()
         })
-        .insert_resource(Wind::vacuum());
+        .insert_resource(ClothWind::vacuum());
         let step = std::time::Duration::from_secs(1) / HZ;
         app.insert_resource(TimeUpdateStrategy::ManualDuration(step));
         app.insert_resource(Time::<Fixed>::from_duration(step));
@@ -259,10 +259,10 @@ impl World {
 /// All edges of a sheet.
 pub fn all_edges() -> ClothPins {
     ClothPins::edges([
-        GridEdge::Top,
-        GridEdge::Bottom,
-        GridEdge::Left,
-        GridEdge::Right,
+        ClothEdge::Top,
+        ClothEdge::Bottom,
+        ClothEdge::Left,
+        ClothEdge::Right,
     ])
 }
 

@@ -15,9 +15,9 @@ use tailorbird_solver::{
 use tracing::warn;
 
 use crate::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     cloth::{Cloth, ClothShape},
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::ClothFrame,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -55,7 +55,7 @@ pub fn build_topology(
         Ref<Cloth>,
         &ClothFrame,
         &mut ClothTopology,
-        &AttachedParticles,
+        &ClothAttachedParticles,
         &mut ClothParticles,
         &mut ClothStatus,
     )>,
@@ -65,7 +65,7 @@ pub fn build_topology(
     let mut built = false;
     for (entity, cloth, frame, mut topology, attached, mut particles, mut status) in &mut cloths {
         let outdated = topology.revision == 0 || topology.scale != frame.scale();
-        let failed_before = !status.is_ok_for(ErrorSource::Shape) && !cloth.is_changed();
+        let failed_before = !status.is_ok_for(ClothErrorSource::Shape) && !cloth.is_changed();
         if !frame.placed || !(cloth.is_changed() || outdated && !failed_before) {
             continue;
         }
@@ -74,7 +74,7 @@ pub fn build_topology(
                 &mut status,
                 entity,
                 &commands,
-                ErrorSource::Shape,
+                ClothErrorSource::Shape,
                 dropped(&topology),
             );
             continue;
@@ -91,11 +91,29 @@ pub fn build_topology(
                 }
                 topology.0 = new;
                 let dropped = dropped(&topology);
-                ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, dropped);
-                ClothStatus::update(&mut status, entity, &commands, ErrorSource::State, None);
+                ClothStatus::update(
+                    &mut status,
+                    entity,
+                    &commands,
+                    ClothErrorSource::Shape,
+                    dropped,
+                );
+                ClothStatus::update(
+                    &mut status,
+                    entity,
+                    &commands,
+                    ClothErrorSource::State,
+                    None,
+                );
             }
             Err(error) => {
-                ClothStatus::update(&mut status, entity, &commands, ErrorSource::Shape, [error]);
+                ClothStatus::update(
+                    &mut status,
+                    entity,
+                    &commands,
+                    ClothErrorSource::Shape,
+                    [error],
+                );
             }
         }
     }
@@ -116,7 +134,7 @@ impl ClothParticles {
     ///
     /// A cloth that is held in its frame grows about the frame's origin, an attached one about the middle of the held particles, a free one
     /// about its own: these may be anywhere.
-    fn grow(&mut self, old: &Topology, new: &Topology, attached: &AttachedParticles) -> bool {
+    fn grow(&mut self, old: &Topology, new: &Topology, attached: &ClothAttachedParticles) -> bool {
         let count = self.len();
         let ratio = new.scale / old.scale;
         if count == 0 || count != new.particles() || !ratio.is_finite() {

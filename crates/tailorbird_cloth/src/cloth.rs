@@ -7,9 +7,9 @@ use bevy_transform::prelude::Transform;
 use tailorbird_solver::topology::Topology;
 
 use crate::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
-    error::{ClothStatus, ShapeError},
+    error::{ClothShapeError, ClothStatus},
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
@@ -18,8 +18,8 @@ use crate::{
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
     pins::ClothPins,
-    sampling::SampledMotion,
-    sleep::{ClothRest, ClothSeen, ClothSleep},
+    sampling::ClothSampledMotion,
+    sleep::{ClothSeen, ClothSleep, ClothSleepState},
     solver::ClothSolver,
     tethers::ClothTethers,
     topology::ClothTopology,
@@ -46,16 +46,16 @@ pub use tailorbird_solver::shape::ClothShape;
     ClothSolver,
     ClothInertia,
     ClothSleep,
-    ClothRest,
+    ClothSleepState,
     ClothSeen,
     ClothTethers,
-    AttachedParticles,
+    ClothAttachedParticles,
     ClothTopology,
     ClothFrame,
     ClothParticles,
     ClothNormals,
     ClothBounds,
-    SampledMotion,
+    ClothSampledMotion,
     Transform
 )]
 pub struct Cloth {
@@ -79,8 +79,8 @@ impl Cloth {
     /// Checked form of [`Cloth::grid`].
     ///
     /// # Errors
-    /// [`ShapeError::Size`], [`ShapeError::Resolution`].
-    pub fn try_grid(size: Vec2, resolution: UVec2) -> Result<Self, ShapeError> {
+    /// [`ClothShapeError::Size`], [`ClothShapeError::Resolution`].
+    pub fn try_grid(size: Vec2, resolution: UVec2) -> Result<Self, ClothShapeError> {
         let cloth = Self::grid(size, resolution);
         cloth.shape.check()?;
         Ok(cloth)
@@ -97,12 +97,12 @@ impl Cloth {
     /// Checked form of [`Cloth::mesh`].
     ///
     /// # Errors
-    /// [`ShapeError::NoTriangles`], [`ShapeError::IndexCount`], [`ShapeError::IndexOutOfRange`], [`ShapeError::NonFinitePosition`],
-    /// [`ShapeError::PositionTooFar`].
+    /// [`ClothShapeError::NoTriangles`], [`ClothShapeError::IndexCount`], [`ClothShapeError::IndexOutOfRange`], [`ClothShapeError::NonFinitePosition`],
+    /// [`ClothShapeError::PositionTooFar`].
     pub fn try_mesh(
         positions: impl Into<Vec<Vec3>>,
         indices: impl Into<Vec<u32>>,
-    ) -> Result<Self, ShapeError> {
+    ) -> Result<Self, ClothShapeError> {
         let cloth = Self::mesh(positions, indices);
         Topology::build(&cloth.shape, Vec3::ONE)?;
         Ok(cloth)

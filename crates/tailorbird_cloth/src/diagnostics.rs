@@ -35,7 +35,7 @@ pub(crate) fn stop_clock(mut time: ResMut<ClothStepTime>) {
 
 /// Stretch of the edges of a cloth: l/L − 1 over its stretch constraints [-].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-pub struct Stretch {
+pub struct ClothStretch {
     /// Mean of max(0, l/L − 1).
     pub mean: f32,
     /// The value that 99 % of the edges do not exceed.
@@ -46,7 +46,7 @@ pub struct Stretch {
 
 impl ClothParticles {
     /// Stretch of the edges. Zero for a cloth without edges.
-    pub fn stretch(&self, topology: &Topology) -> Stretch {
+    pub fn stretch(&self, topology: &Topology) -> ClothStretch {
         let mut values: Vec<f32> = topology
             .stretch_edges()
             .into_iter()
@@ -62,14 +62,14 @@ impl ClothParticles {
             })
             .collect();
         if values.is_empty() {
-            return Stretch::default();
+            return ClothStretch::default();
         }
         let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
         let mean = (sum / values.len() as f64) as f32;
         let at = (values.len() * 99 / 100).min(values.len() - 1);
         let (_, p99, above) = values.select_nth_unstable_by(at, f32::total_cmp);
         let max = above.iter().copied().fold(*p99, f32::max);
-        Stretch {
+        ClothStretch {
             mean,
             p99: *p99,
             max,

@@ -17,7 +17,7 @@ pub(crate) use split::split;
 pub use split::split_mirrored;
 
 use crate::{
-    inertia::{ClothInertia, TeleportMode},
+    inertia::{ClothInertia, ClothTeleportMode},
     sampling::excess,
 };
 
@@ -40,8 +40,8 @@ pub struct ClothFrame {
     velocity: Vec3,
     /// True if the cloth goes where its entity goes, and feels nothing of it.
     pub(crate) carries: bool,
-    asked: Option<TeleportMode>,
-    teleported: Option<TeleportMode>,
+    asked: Option<ClothTeleportMode>,
+    teleported: Option<ClothTeleportMode>,
 }
 
 impl Default for ClothFrame {
@@ -76,8 +76,8 @@ impl ClothFrame {
     /// The entity is put elsewhere, and its cloth with it: whatever way the entity goes until the next step, the cloth does not
     /// feel it. So with its parents, and with whatever else hangs on those.
     /// [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done. What holds the cloth without being a parent is told by
-    /// [`SampledMotion::teleport`](crate::sampling::SampledMotion::teleport).
-    pub fn teleport(&mut self, mode: TeleportMode) {
+    /// [`ClothSampledMotion::teleport`](crate::sampling::ClothSampledMotion::teleport).
+    pub fn teleport(&mut self, mode: ClothTeleportMode) {
         self.asked = Some(mode);
     }
 
@@ -87,7 +87,7 @@ impl ClothFrame {
     }
 
     /// Teleport of the cloth in this step, if there was one.
-    pub(crate) fn take_teleport(&mut self) -> Option<TeleportMode> {
+    pub(crate) fn take_teleport(&mut self) -> Option<ClothTeleportMode> {
         self.teleported.take()
     }
 

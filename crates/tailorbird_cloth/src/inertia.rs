@@ -13,7 +13,7 @@
 //! # fn spawn(mut commands: Commands) {
 //! commands.spawn((
 //!     Cloth::grid(Vec2::new(0.8, 1.2), UVec2::new(32, 48)),
-//!     ClothPins::edges([GridEdge::Top]),
+//!     ClothPins::edges([ClothEdge::Top]),
 //!     ClothInertia {
 //!         // Half of the way and of the turns, and nothing beyond a fast run.
 //!         linear: 0.5,
@@ -35,7 +35,7 @@
 //! fn respawn(mut capes: Query<(&mut Transform, &mut ClothFrame)>) {
 //!     for (mut transform, mut frame) in &mut capes {
 //!         transform.translation = Vec3::ZERO;
-//!         frame.teleport(TeleportMode::Reset);
+//!         frame.teleport(ClothTeleportMode::Reset);
 //!     }
 //! }
 //! ```
@@ -96,7 +96,7 @@ pub struct ClothInertia {
     )]
     pub teleport_angle: f32,
     /// Treatment of the cloth on a teleport.
-    pub teleport: TeleportMode,
+    pub teleport: ClothTeleportMode,
 }
 
 /// Treatment of a cloth whose entity is put elsewhere.
@@ -104,7 +104,7 @@ pub struct ClothInertia {
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum TeleportMode {
+pub enum ClothTeleportMode {
     /// The cloth is carried along as it is, and its velocity turns with it.
     #[default]
     KeepShape,
@@ -120,7 +120,7 @@ pub struct ClothTeleported {
     /// The cloth.
     pub entity: Entity,
     /// Treatment of the cloth.
-    pub mode: TeleportMode,
+    pub mode: ClothTeleportMode,
 }
 
 impl Default for ClothInertia {
@@ -134,7 +134,7 @@ impl Default for ClothInertia {
             max_angular_speed: f32::INFINITY,
             teleport_speed: f32::INFINITY,
             teleport_angle: f32::INFINITY,
-            teleport: TeleportMode::KeepShape,
+            teleport: ClothTeleportMode::KeepShape,
         }
     }
 }

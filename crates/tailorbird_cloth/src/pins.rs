@@ -31,14 +31,14 @@ pub struct ClothPins {
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 pub struct ClothPin {
     /// Particles that the pin holds.
-    pub selection: PinSelection,
+    pub selection: ClothSelection,
     /// Place of the pin, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new cloth). The
     /// particles move there within one step, evenly over the substeps.
     #[cfg_attr(feature = "serialize", serde(default))]
     pub target: Option<Vec3>,
     /// Author of the pin.
     #[cfg_attr(feature = "serialize", serde(default))]
-    pub author: PinAuthor,
+    pub author: ClothPinAuthor,
 }
 
 /// Particles that a pin holds.
@@ -47,7 +47,7 @@ pub struct ClothPin {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 #[non_exhaustive]
-pub enum PinSelection {
+pub enum ClothSelection {
     /// The particle with this index.
     Particle(u32),
     /// The particles with these indices.
@@ -55,9 +55,9 @@ pub enum PinSelection {
     /// The particle at this column and row of a grid.
     Cell(UVec2),
     /// A corner of a grid.
-    Corner(GridCorner),
+    Corner(ClothCorner),
     /// An edge of a grid: from left to right, or from top to bottom.
-    Edge(GridEdge),
+    Edge(ClothEdge),
     /// Every particle that lies within a ball at rest.
     Within {
         /// Its centre, in the cloth's frame \[m\].
@@ -71,7 +71,7 @@ pub enum PinSelection {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum GridCorner {
+pub enum ClothCorner {
     /// Row 0, column 0.
     TopLeft,
     /// Row 0, last column.
@@ -82,7 +82,7 @@ pub enum GridCorner {
     BottomRight,
 }
 
-impl GridCorner {
+impl ClothCorner {
     /// All four corners.
     pub const ALL: [Self; 4] = [
         Self::TopLeft,
@@ -98,7 +98,7 @@ impl GridCorner {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum GridEdge {
+pub enum ClothEdge {
     /// Row 0.
     Top,
     /// The last row.
@@ -113,7 +113,7 @@ pub enum GridEdge {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum PinAuthor {
+pub enum ClothPinAuthor {
     /// The game.
     #[default]
     Scene,
@@ -123,11 +123,11 @@ pub enum PinAuthor {
 
 impl ClothPin {
     /// Holds particles where they are.
-    pub fn new(selection: PinSelection) -> Self {
+    pub fn new(selection: ClothSelection) -> Self {
         Self {
             selection,
             target: None,
-            author: PinAuthor::Scene,
+            author: ClothPinAuthor::Scene,
         }
     }
 
@@ -135,7 +135,7 @@ impl ClothPin {
     pub fn at(particle: u32, target: Vec3) -> Self {
         Self {
             target: Some(target),
-            ..Self::new(PinSelection::Particle(particle))
+            ..Self::new(ClothSelection::Particle(particle))
         }
     }
 }
@@ -145,41 +145,43 @@ impl ClothPin {
     pub fn is_by_place(&self) -> bool {
         !matches!(
             self.selection,
-            PinSelection::Particle(_) | PinSelection::Particles(_) | PinSelection::Cell(_)
+            ClothSelection::Particle(_) | ClothSelection::Particles(_) | ClothSelection::Cell(_)
         )
     }
 }
 
 impl ClothPins {
-    fn of(selections: impl IntoIterator<Item = PinSelection>) -> Self {
+    fn of(selections: impl IntoIterator<Item = ClothSelection>) -> Self {
         Self {
             pins: selections.into_iter().map(ClothPin::new).collect(),
         }
     }
 
     /// Corners of a grid.
-    pub fn corners(corners: impl IntoIterator<Item = GridCorner>) -> Self {
-        Self::of(corners.into_iter().map(PinSelection::Corner))
+    pub fn corners(corners: impl IntoIterator<Item = ClothCorner>) -> Self {
+        Self::of(corners.into_iter().map(ClothSelection::Corner))
     }
 
     /// Edges of a grid.
-    pub fn edges(edges: impl IntoIterator<Item = GridEdge>) -> Self {
-        Self::of(edges.into_iter().map(PinSelection::Edge))
+    pub fn edges(edges: impl IntoIterator<Item = ClothEdge>) -> Self {
+        Self::of(edges.into_iter().map(ClothSelection::Edge))
     }
 
     /// Particles by index.
     pub fn particles(particles: impl IntoIterator<Item = u32>) -> Self {
-        Self::of(particles.into_iter().map(PinSelection::Particle))
+        Self::of(particles.into_iter().map(ClothSelection::Particle))
     }
 
     /// Every particle that lies within a ball (in the cloth's frame \[m\]) at rest.
     pub fn within(center: Vec3, radius: f32) -> Self {
-        Self::of([PinSelection::Within { center, radius }])
+        Self::of([ClothSelection::Within { center, radius }])
     }
 
     /// Every particle whose painted weight is above `threshold`.
     pub fn painted(weights: &ClothWeights, threshold: f32) -> Self {
-        Self::of([PinSelection::Particles(weights.above(threshold).collect())])
+        Self::of([ClothSelection::Particles(
+            weights.above(threshold).collect(),
+        )])
     }
 
     /// Adds a pin.
@@ -190,18 +192,20 @@ impl ClothPins {
 
     /// Returns whether the player made any of the pins.
     pub fn has_user_pins(&self) -> bool {
-        self.pins.iter().any(|pin| pin.author == PinAuthor::User)
+        self.pins
+            .iter()
+            .any(|pin| pin.author == ClothPinAuthor::User)
     }
 
     /// Removes the pins that the player made, and tells how many there were.
     pub fn release_user_pins(&mut self) -> usize {
         let before = self.pins.len();
-        self.pins.retain(|pin| pin.author != PinAuthor::User);
+        self.pins.retain(|pin| pin.author != ClothPinAuthor::User);
         before - self.pins.len()
     }
 }
 
-impl PinSelection {
+impl ClothSelection {
     /// The particles that are selected.
     ///
     /// # Errors
@@ -255,10 +259,10 @@ impl PinSelection {
             Self::Corner(corner) => {
                 let last = grid()? - 1;
                 let at = match corner {
-                    GridCorner::TopLeft => UVec2::ZERO,
-                    GridCorner::TopRight => UVec2::new(last.x, 0),
-                    GridCorner::BottomLeft => UVec2::new(0, last.y),
-                    GridCorner::BottomRight => last,
+                    ClothCorner::TopLeft => UVec2::ZERO,
+                    ClothCorner::TopRight => UVec2::new(last.x, 0),
+                    ClothCorner::BottomLeft => UVec2::new(0, last.y),
+                    ClothCorner::BottomRight => last,
                 };
                 vec![at.y * (last.x + 1) + at.x]
             }
@@ -268,10 +272,10 @@ impl PinSelection {
                     y: rows,
                 } = grid()?;
                 match edge {
-                    GridEdge::Top => (0..columns).collect(),
-                    GridEdge::Bottom => (0..columns).map(|c| (rows - 1) * columns + c).collect(),
-                    GridEdge::Left => (0..rows).map(|r| r * columns).collect(),
-                    GridEdge::Right => (0..rows).map(|r| r * columns + columns - 1).collect(),
+                    ClothEdge::Top => (0..columns).collect(),
+                    ClothEdge::Bottom => (0..columns).map(|c| (rows - 1) * columns + c).collect(),
+                    ClothEdge::Left => (0..rows).map(|r| r * columns).collect(),
+                    ClothEdge::Right => (0..rows).map(|r| r * columns + columns - 1).collect(),
                 }
             }
             Self::Within { center, radius } => {

@@ -9,7 +9,7 @@ use tailorbird_solver::reaction::PinForces;
 /// Measured where a cloth has this component; a hanging sheet of 1 kg pulls with 9.81 N.
 ///
 /// The force is the change of the free particles' momentum by the constraints, plus the weight of the held particles; the inertia of
-/// these, wind on them and the springs of [attachments](crate::attachment::AttachmentForce) are not part of it. If the cloth lies on a
+/// these, wind on them and the springs of [attachments](crate::attachment::ClothAttachmentForce) are not part of it. If the cloth lies on a
 /// collider, the pressure of the lines on it is a part as well.
 ///
 /// ```

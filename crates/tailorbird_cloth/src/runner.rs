@@ -20,7 +20,7 @@ use crate::{
     schedule::ClothSubstep,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
-    wind::BlowingWind,
+    wind::ClothWindState,
 };
 
 /// Number of particles from which on a cloth is worked on by all threads, and not shared out with others.
@@ -62,7 +62,7 @@ impl OwnStages {
 /// Takes each cloth through a whole step.
 pub(crate) fn simulate_cloths(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     colliders: Res<ClothColliders>,
     mut time: ResMut<ClothStepTime>,
     mut cloths: Query<ClothStages, With<Cloth>>,

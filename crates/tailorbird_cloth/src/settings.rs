@@ -46,7 +46,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-pub use tailorbird_solver::instruction_set::InstructionSet;
+pub use tailorbird_solver::instruction_set::ClothInstructionSet;
 
 use crate::error::ClothErrorKind;
 
@@ -74,7 +74,7 @@ pub struct ClothSettings {
     /// Number of passes over the constraints in each substep. One pass in many substeps stretches less than many passes in few.
     pub iterations: u32,
     /// The instructions that the kernels use. The result has the same bits with any.
-    pub instruction_set: InstructionSet,
+    pub instruction_set: ClothInstructionSet,
     /// Speed of time for cloth, compared with the clock of its schedule, 0 to 10 [-]. 0 is a pause. Beyond 1 a step has that many times as
     /// many substeps, if their number is not set.
     ///
@@ -113,7 +113,7 @@ impl Default for ClothSettings {
             most_substeps: 64,
             substep_budget: 500_000,
             iterations: 1,
-            instruction_set: InstructionSet::Auto,
+            instruction_set: ClothInstructionSet::Auto,
             time_scale: 1.0,
             overlap_speed: 1.0,
             teleport_speed: Self::TELEPORT_SPEED,

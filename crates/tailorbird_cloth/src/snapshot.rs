@@ -3,23 +3,23 @@
 use bevy_ecs::{component::Mutable, prelude::*};
 
 use crate::{
-    attachment::{AttachedParticles, AttachmentForce, AttachmentState},
+    attachment::{ClothAttachedParticles, ClothAttachmentForce, ClothAttachmentState},
     bounds::ClothBounds,
-    collider::ColliderPose,
+    collider::ClothColliderState,
     error::ClothStatus,
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
-    motion::{MotionState, TargetSamples},
+    motion::{ClothMotionState, ClothTargetSamples},
     normals::ClothNormals,
     particles::ClothParticles,
     reaction::ClothPinForces,
-    sampling::{FrameClock, SampledMotion},
-    sleep::ClothRest,
+    sampling::{ClothFrameClock, ClothSampledMotion},
+    sleep::ClothSleepState,
     step::ClothStep,
     tethers::ClothTethers,
     topology::ClothTopology,
-    wind::BlowingWind,
+    wind::ClothWindState,
 };
 
 /// The values of a component, by entity.
@@ -89,26 +89,26 @@ snapshot! {
     particles: ClothParticles,
     topologies: ClothTopology,
     frames: ClothFrame,
-    rests: ClothRest,
+    rests: ClothSleepState,
     tethers: ClothTethers,
-    attached: AttachedParticles,
-    attachments: AttachmentState,
-    attachment_forces: AttachmentForce,
-    limits: MotionState,
-    targets: TargetSamples,
+    attached: ClothAttachedParticles,
+    attachments: ClothAttachmentState,
+    attachment_forces: ClothAttachmentForce,
+    limits: ClothMotionState,
+    targets: ClothTargetSamples,
     grabs: ClothGrab,
     forces: ClothForces,
     pin_forces: ClothPinForces,
     bounds: ClothBounds,
     normals: ClothNormals,
     statuses: ClothStatus,
-    motions: SampledMotion,
-    collider_poses: ColliderPose,
+    motions: ClothSampledMotion,
+    collider_poses: ClothColliderState,
     }
     resources {
     step: ClothStep,
-    wind: BlowingWind,
-    clock: FrameClock,
+    wind: ClothWindState,
+    clock: ClothFrameClock,
     }
 }
 

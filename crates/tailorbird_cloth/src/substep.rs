@@ -63,10 +63,10 @@ use tailorbird_solver::{
 
 use crate::{
     cloth::Cloth, frame::ClothFrame, material::ClothMaterial, particles::ClothParticles,
-    sleep::ClothRest, step::ClothStep,
+    sleep::ClothSleepState, step::ClothStep,
 };
 
-/// The cloths that are simulated in this substep; those that sleep are left out: see [`ClothRest::wake`].
+/// The cloths that are simulated in this substep; those that sleep are left out: see [`ClothSleepState::wake`].
 #[derive(SystemParam)]
 pub struct SubstepCloths<'w, 's> {
     step: Res<'w, ClothStep>,
@@ -80,7 +80,7 @@ pub(crate) struct SubstepQuery {
     entity: Entity,
     frame: &'static ClothFrame,
     material: &'static ClothMaterial,
-    rest: &'static ClothRest,
+    rest: &'static ClothSleepState,
     particles: &'static mut ClothParticles,
 }
 

@@ -8,7 +8,7 @@ use tracing::warn;
 
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };
@@ -19,13 +19,13 @@ pub struct ClothReset {
     /// The cloth.
     pub entity: Entity,
     /// Reason.
-    pub reason: ResetReason,
+    pub reason: ClothResetReason,
 }
 
 /// Why a cloth was put back to an earlier state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
-pub enum ResetReason {
+pub enum ClothResetReason {
     /// A position became infinite or NaN; the cloth is back at the start of the step, without velocity.
     NonFinite,
 }
@@ -70,13 +70,13 @@ impl ClothStagesItem<'_, '_> {
         self.particles.0.reset_to_step_start();
         let (entity, status) = (self.entity, &mut self.status);
         let error = ClothErrorKind::NonFiniteState { particle };
-        if status.is_ok_for(ErrorSource::State) {
-            ClothStatus::update(status, entity, commands, ErrorSource::State, [error]);
+        if status.is_ok_for(ClothErrorSource::State) {
+            ClothStatus::update(status, entity, commands, ClothErrorSource::State, [error]);
         }
         commands.command_scope(|mut commands| {
             commands.trigger(ClothReset {
                 entity,
-                reason: ResetReason::NonFinite,
+                reason: ClothResetReason::NonFinite,
             });
         });
     }

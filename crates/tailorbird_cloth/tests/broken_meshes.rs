@@ -25,7 +25,7 @@ fn app() -> App {
     let step = fixed.timestep();
     app.insert_resource(fixed)
         .insert_resource(TimeUpdateStrategy::ManualDuration(step))
-        .insert_resource(Wind::steady(Vec3::new(3.0, 0.0, 4.0)));
+        .insert_resource(ClothWind::steady(Vec3::new(3.0, 0.0, 4.0)));
     app
 }
 
@@ -60,9 +60,12 @@ fn survives((positions, indices): Triangles) -> Result<(), TestCaseError> {
         }
         let status = app.world().get::<ClothStatus>(entity).expect("a cloth");
         let state = app.world().get::<ClothParticles>(entity).expect("a cloth");
-        let refused = status
-            .errors()
-            .any(|error| matches!(error, ClothErrorKind::Shape(ShapeError::NoTriangles { .. })));
+        let refused = status.errors().any(|error| {
+            matches!(
+                error,
+                ClothErrorKind::Shape(ClothShapeError::NoTriangles { .. })
+            )
+        });
         prop_assert_eq!(state.is_empty(), refused, "{:?}", status);
         prop_assert_eq!(refused, particles == 0);
         prop_assert!(state.len() <= count);
@@ -205,7 +208,7 @@ fn a_mesh_without_edges_or_with_equal_corners_neither_hangs_nor_asserts() {
     let refused = |positions: Vec<Vec3>, indices: Vec<u32>| {
         let built = Topology::build(&Cloth::mesh(positions, indices).shape, Vec3::ONE);
         assert!(
-            matches!(built, Err(ShapeError::NoTriangles { .. })),
+            matches!(built, Err(ClothShapeError::NoTriangles { .. })),
             "{built:?}"
         );
     };
@@ -226,7 +229,7 @@ fn a_mesh_without_edges_or_with_equal_corners_neither_hangs_nor_asserts() {
 fn a_moebius_strip_is_reported_and_keeps_its_lengths() {
     let (positions, indices) = twisted(120, 1);
     let mut app = app();
-    app.insert_resource(Wind::vacuum());
+    app.insert_resource(ClothWind::vacuum());
     let entity = app
         .world_mut()
         .spawn((

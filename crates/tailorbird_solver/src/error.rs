@@ -7,7 +7,7 @@ use thiserror::Error;
 /// A rest shape is wrong: the field, its value, and what is allowed.
 #[derive(Clone, Debug, PartialEq, Error, Reflect)]
 #[non_exhaustive]
-pub enum ShapeError {
+pub enum ClothShapeError {
     /// A grid's size is zero, negative or not finite.
     #[error("Cloth grid size is {value} m, must be positive and finite in both directions")]
     Size {

@@ -8,7 +8,7 @@ use fearless_simd::Level;
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum InstructionSet {
+pub enum ClothInstructionSet {
     /// The best of this machine.
     #[default]
     Auto,
@@ -22,7 +22,7 @@ pub enum InstructionSet {
     Avx512,
 }
 
-impl InstructionSet {
+impl ClothInstructionSet {
     /// Level of the vector library.
     pub fn level(self) -> Level {
         let best = Level::new();

@@ -5,7 +5,7 @@ use std::{collections::hash_map::DefaultHasher, hash::Hasher};
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_reflect::prelude::*;
 
-use crate::{error::ShapeError, topology::repair::Repaired};
+use crate::{error::ClothShapeError, topology::repair::Repaired};
 
 /// The rest shape of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
@@ -74,7 +74,7 @@ impl ClothShape {
     ///
     /// # Errors
     /// The first error that is found.
-    pub fn check(&self) -> Result<(), ShapeError> {
+    pub fn check(&self) -> Result<(), ClothShapeError> {
         /// Largest number of particles of a grid: f32 counts up to it exactly.
         const MOST_PARTICLES: u64 = 1 << 24;
         match self {
@@ -84,14 +84,14 @@ impl ClothShape {
                 origin,
             } => {
                 if !size.is_finite() || size.min_element() <= 0.0 {
-                    return Err(ShapeError::Size { value: *size });
+                    return Err(ClothShapeError::Size { value: *size });
                 }
                 let particles = u64::from(resolution.x) * u64::from(resolution.y);
                 if resolution.cmplt(UVec2::splat(2)).any() || particles > MOST_PARTICLES {
-                    return Err(ShapeError::Resolution { value: *resolution });
+                    return Err(ClothShapeError::Resolution { value: *resolution });
                 }
                 if !origin.is_finite() {
-                    return Err(ShapeError::Origin { value: *origin });
+                    return Err(ClothShapeError::Origin { value: *origin });
                 }
                 Ok(())
             }
@@ -102,19 +102,19 @@ impl ClothShape {
                 weld_distance,
             } => {
                 if !uvs.is_empty() && uvs.len() != positions.len() {
-                    return Err(ShapeError::UvCount {
+                    return Err(ClothShapeError::UvCount {
                         value: uvs.len(),
                         vertices: positions.len(),
                     });
                 }
                 if !(*weld_distance >= 0.0 && weld_distance.is_finite()) {
-                    return Err(ShapeError::WeldDistance {
+                    return Err(ClothShapeError::WeldDistance {
                         value: *weld_distance,
                     });
                 }
                 check_positions(positions.iter().copied())?;
                 if indices.len() % 3 != 0 {
-                    return Err(ShapeError::IndexCount {
+                    return Err(ClothShapeError::IndexCount {
                         value: indices.len(),
                     });
                 }
@@ -124,14 +124,14 @@ impl ClothShape {
                     .enumerate()
                     .find(|(_, i)| **i as usize >= vertices)
                 {
-                    return Err(ShapeError::IndexOutOfRange {
+                    return Err(ClothShapeError::IndexOutOfRange {
                         at,
                         value: *value,
                         vertices,
                     });
                 }
                 if indices.is_empty() {
-                    return Err(ShapeError::NoTriangles {
+                    return Err(ClothShapeError::NoTriangles {
                         vertices,
                         triangles: 0,
                     });
@@ -232,15 +232,17 @@ impl ClothShape {
 }
 
 /// Checks the vertices of a mesh.
-pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), ShapeError> {
+pub(crate) fn check_positions(
+    positions: impl Iterator<Item = Vec3>,
+) -> Result<(), ClothShapeError> {
     /// Largest coordinate \[m\]: f32 counts in steps of 6 cm there.
     const FARTHEST: f32 = 1e6;
     for (vertex, value) in positions.enumerate() {
         if !value.is_finite() {
-            return Err(ShapeError::NonFinitePosition { vertex, value });
+            return Err(ClothShapeError::NonFinitePosition { vertex, value });
         }
         if value.abs().max_element() > FARTHEST {
-            return Err(ShapeError::PositionTooFar { vertex, value });
+            return Err(ClothShapeError::PositionTooFar { vertex, value });
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ mod turbulence;
 
 use bevy_math::Vec3;
 
-pub use turbulence::{Turbulence, WAVES, Wave, sine};
+pub use turbulence::{ClothTurbulence, WAVES, Wave, sine};
 
 /// Region in which a wind blows, in the axes of its entity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -21,8 +21,8 @@ const PER_SPEED: f32 = 0.04;
 const STILL: f32 = 0.05;
 
 pub(super) fn draw(
-    wind: Res<BlowingWind>,
-    zones: Query<(&WindZone, &GlobalTransform)>,
+    wind: Res<ClothWindState>,
+    zones: Query<(&ClothWindZone, &GlobalTransform)>,
     cloths: Query<(&ClothFrame, &ClothBounds), With<Cloth>>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
@@ -30,7 +30,7 @@ pub(super) fn draw(
         let at = transform.affine();
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
         let half = match zone.shape {
-            WindShape::Cuboid { size } => {
+            ClothWindShape::Cuboid { size } => {
                 gizmos.cube(at * Affine3A::from_scale(size), COLOR);
                 let half = 0.5 * size * scale.abs();
                 let inner = (half - zone.falloff).max(Vec3::ZERO);
@@ -39,7 +39,7 @@ pub(super) fn draw(
                 gizmos.cube(full, COLOR.with_alpha(0.3));
                 half
             }
-            WindShape::Sphere { radius } => {
+            ClothWindShape::Sphere { radius } => {
                 let radius = radius * scale.abs().max_element();
                 let place = Isometry3d::new(translation, rotation);
                 gizmos.sphere(place, radius, COLOR);
@@ -60,7 +60,7 @@ pub(super) fn draw(
 }
 
 /// Arrows in a box of these half sides.
-fn arrows(gizmos: &mut Gizmos<ClothGizmos>, wind: &BlowingWind, place: Isometry3d, half: Vec3) {
+fn arrows(gizmos: &mut Gizmos<ClothGizmos>, wind: &ClothWindState, place: Isometry3d, half: Vec3) {
     if !half.is_finite() {
         return;
     }

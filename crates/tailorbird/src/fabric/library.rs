@@ -35,7 +35,7 @@ fn kinds(has_holes: bool) -> [(&'static str, Texels); 3] {
 
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
-pub struct FabricLibrary {
+pub struct ClothFabricLibrary {
     /// Folder of the textures.
     folder: Option<String>,
     /// By the names of fabrics, and whether they have holes.
@@ -64,7 +64,7 @@ enum Textures {
     Missing,
 }
 
-impl FabricLibrary {
+impl ClothFabricLibrary {
     pub(super) fn new(folder: Option<String>) -> Self {
         Self {
             folder,
@@ -84,7 +84,7 @@ impl FabricLibrary {
 /// Gives cloths the material of their look.
 pub(super) fn dress_cloths(
     mut commands: Commands,
-    mut library: ResMut<FabricLibrary>,
+    mut library: ResMut<ClothFabricLibrary>,
     server: Res<AssetServer>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     cloths: Query<(Entity, &ClothLook, Option<&Cloth>), Or<(Changed<ClothLook>, Changed<Cloth>)>>,
@@ -150,7 +150,7 @@ pub(super) fn dress_cloths(
 
 /// Makes smaller copies of the textures that have been loaded, and gives them to the materials that wait for them.
 pub(super) fn load_textures(
-    mut library: ResMut<FabricLibrary>,
+    mut library: ResMut<ClothFabricLibrary>,
     server: Res<AssetServer>,
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -158,7 +158,7 @@ pub(super) fn load_textures(
     if library.is_ready() {
         return;
     }
-    let FabricLibrary {
+    let ClothFabricLibrary {
         textures,
         materials: ours,
         ..

@@ -37,7 +37,7 @@ use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::prelude::*;
 
-pub use library::FabricLibrary;
+pub use library::ClothFabricLibrary;
 use library::{dress_cloths, load_textures};
 pub use mipmaps::{Texels, with_mipmaps};
 
@@ -277,7 +277,7 @@ impl Plugin for ClothFabricPlugin {
         #[cfg(not(feature = "fabric_textures"))]
         let folder = self.folder.clone();
         app.register_type::<ClothLook>()
-            .insert_resource(FabricLibrary::new(folder))
+            .insert_resource(ClothFabricLibrary::new(folder))
             .add_systems(
                 PostUpdate,
                 (dress_cloths, load_textures)

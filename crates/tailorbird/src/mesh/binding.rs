@@ -6,7 +6,7 @@ use super::follow::Drawn;
 
 /// Binding of a vertex of a mesh. Particles are in storage order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum VertexBinding {
+pub enum ClothVertexBinding {
     /// A particle.
     Particle(u32),
     /// A point of a triangle between three particles.
@@ -44,20 +44,20 @@ impl Bindings {
     }
 
     /// Binding of a vertex; `None` if there is no such vertex.
-    pub fn get(&self, vertex: u32) -> Option<VertexBinding> {
+    pub fn get(&self, vertex: u32) -> Option<ClothVertexBinding> {
         let found = self
             .on_triangles
             .binary_search_by_key(&vertex, |(vertex, ..)| *vertex);
         if let Ok(found) = found {
             let (_, corners, weights) = self.on_triangles[found];
-            return Some(VertexBinding::Triangle { corners, weights });
+            return Some(ClothVertexBinding::Triangle { corners, weights });
         }
         let particle = self.particles.get(vertex as usize)?;
-        Some(VertexBinding::Particle(*particle))
+        Some(ClothVertexBinding::Particle(*particle))
     }
 
     /// Binds a vertex. Returns whether there is such a vertex.
-    pub fn set(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+    pub fn set(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         let Some(particle) = self.particles.get_mut(vertex as usize) else {
             return false;
         };
@@ -65,13 +65,13 @@ impl Bindings {
             .on_triangles
             .binary_search_by_key(&vertex, |(vertex, ..)| *vertex);
         match (binding, found) {
-            (VertexBinding::Particle(to), found) => {
+            (ClothVertexBinding::Particle(to), found) => {
                 *particle = to;
                 if let Ok(found) = found {
                     self.on_triangles.remove(found);
                 }
             }
-            (VertexBinding::Triangle { corners, weights }, found) => {
+            (ClothVertexBinding::Triangle { corners, weights }, found) => {
                 let nearest = |a: usize, b| if weights[b] > weights[a] { b } else { a };
                 *particle = corners[(1..3).fold(0, nearest)];
                 match found {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn what_is_bound_last_counts() {
         let mut bindings = Bindings::from(vec![3, 4, 5]);
-        let on = |a| VertexBinding::Triangle {
+        let on = |a| ClothVertexBinding::Triangle {
             corners: [a, 7, 8],
             weights: [0.2, 0.5, 0.3],
         };
@@ -128,8 +128,8 @@ mod tests {
         assert!(!bindings.set(3, on(1)) && bindings.get(3).is_none());
         assert_eq!([0, 2].map(|v| bindings.get(v)), [2, 6].map(|a| Some(on(a))));
         assert_eq!(bindings.particles(), [7, 4, 7]);
-        assert!(bindings.set(0, VertexBinding::Particle(9)));
-        assert!(bindings.set(2, VertexBinding::Particle(1)));
+        assert!(bindings.set(0, ClothVertexBinding::Particle(9)));
+        assert!(bindings.set(2, ClothVertexBinding::Particle(1)));
         assert!(bindings.on_triangles.is_empty());
         assert_eq!(bindings.particles(), [9, 4, 1]);
     }

@@ -13,7 +13,7 @@ use tailorbird_cloth::{
 };
 
 use super::{
-    ClothMeshWrite, VertexBinding, follow::Follow, from_mesh::ClothMeshSource, packed::Packed,
+    ClothMeshWrite, ClothVertexBinding, follow::Follow, from_mesh::ClothMeshSource, packed::Packed,
     parts::MeshSource, vertices::Vertices,
 };
 use crate::drawn::ClothDrawnHolds;
@@ -117,7 +117,7 @@ impl ClothMeshPart {
     }
 
     /// Binding of a vertex of the mesh; `None` if there is no such vertex.
-    pub fn binding(&self, vertex: u32) -> Option<VertexBinding> {
+    pub fn binding(&self, vertex: u32) -> Option<ClothVertexBinding> {
         self.follow.bindings.get(vertex)
     }
 
@@ -126,7 +126,7 @@ impl ClothMeshPart {
     ///
     /// # Panics
     /// When it is drawn, where a particle does not exist.
-    pub fn bind(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+    pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         self.shows = None;
         self.follow.bind(vertex, binding)
     }

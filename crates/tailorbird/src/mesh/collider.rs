@@ -18,7 +18,7 @@ use super::{parts::append, plain};
 /// let hull = ClothCollider::convex_hull_from_mesh(&mesh)?;
 /// # Ok::<(), ClothErrorKind>(())
 /// ```
-pub trait ColliderFromMesh: Sized {
+pub trait ClothColliderFromMesh: Sized {
     /// A collider of all triangles of the mesh.
     ///
     /// # Errors
@@ -34,7 +34,7 @@ pub trait ColliderFromMesh: Sized {
     fn convex_hull_from_mesh(mesh: &Mesh) -> Result<Self, ClothErrorKind>;
 }
 
-impl ColliderFromMesh for ClothCollider {
+impl ClothColliderFromMesh for ClothCollider {
     fn trimesh_from_mesh(mesh: &Mesh) -> Result<Self, ClothErrorKind> {
         let (mut positions, mut indices) = (Vec::new(), Vec::new());
         append(mesh, None, &mut positions, &mut indices)?;

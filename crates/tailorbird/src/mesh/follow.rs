@@ -5,7 +5,7 @@ use bevy_tasks::{ComputeTaskPool, TaskPool};
 use tailorbird_cloth::{normals::ClothNormals, particles::ClothParticles};
 
 use super::{
-    binding::{Bindings, VertexBinding},
+    binding::{Bindings, ClothVertexBinding},
     interleave::{Interleaved, SheetVertices},
     interleaved::{VertexOrder, write_normals, write_positions, write_sheet},
     packed::Packed,
@@ -88,7 +88,7 @@ impl Follow {
     }
 
     /// Binds a vertex to something else. Returns whether there is such a vertex.
-    pub fn bind(&mut self, vertex: u32, binding: VertexBinding) -> bool {
+    pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         let bound = self.bindings.set(vertex, binding);
         if bound {
             self.in_order[0] = None;

@@ -9,15 +9,15 @@ use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, skinning::SkinnedMesh};
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    pins::{ClothPin, ClothPins, PinSelection},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    pins::{ClothPin, ClothPins, ClothSelection},
     topology::repair::Repaired,
     weights::ClothWeights,
 };
 use tracing::warn;
 
 use super::{
-    ClothMeshOf, MeshParts, MeshPins,
+    ClothMeshOf, ClothMeshParts, ClothMeshPins,
     changes::Changes,
     parts::{Finder, Found, MeshSource, append},
     plain::texture_coordinates,
@@ -44,11 +44,11 @@ pub struct ClothFromMesh {
     /// Vertices no further apart than this \[m\] become one particle, of different meshes as well.
     pub weld_distance: f32,
     /// Vertices that are pinned; one pin beside those of [`ClothPins`]. Painted weights are kept in [`ClothWeights`].
-    pub pins: MeshPins,
+    pub pins: ClothMeshPins,
     /// Meshes below the entity that become the cloth.
-    pub parts: MeshParts,
+    pub parts: ClothMeshParts,
     /// Directions of its warp and weft.
-    pub threads: MeshThreads,
+    pub threads: ClothMeshThreads,
     /// True if the colours that [`Self::pins`] reads from the vertices are drawn as well. Paint is data: colours that name pins would tint
     /// the cloth.
     pub draw_paint: bool,
@@ -59,9 +59,9 @@ impl Default for ClothFromMesh {
     fn default() -> Self {
         Self {
             weld_distance: Cloth::WELD_DISTANCE,
-            pins: MeshPins::None,
-            parts: MeshParts::All,
-            threads: MeshThreads::Uvs,
+            pins: ClothMeshPins::None,
+            parts: ClothMeshParts::All,
+            threads: ClothMeshThreads::Uvs,
             draw_paint: false,
         }
     }
@@ -69,19 +69,19 @@ impl Default for ClothFromMesh {
 
 impl ClothFromMesh {
     /// With these pins.
-    pub fn with_pins(mut self, pins: MeshPins) -> Self {
+    pub fn with_pins(mut self, pins: ClothMeshPins) -> Self {
         self.pins = pins;
         self
     }
 
     /// Of the meshes with, or below entities with, one of these names.
     pub fn with_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.parts = MeshParts::Named(names.into_iter().map(Into::into).collect());
+        self.parts = ClothMeshParts::Named(names.into_iter().map(Into::into).collect());
         self
     }
 
     /// With warp and weft along these.
-    pub fn with_threads(mut self, threads: MeshThreads) -> Self {
+    pub fn with_threads(mut self, threads: ClothMeshThreads) -> Self {
         self.threads = threads;
         self
     }
@@ -96,7 +96,7 @@ impl ClothFromMesh {
 /// Directions of the warp and weft of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
-pub enum MeshThreads {
+pub enum ClothMeshThreads {
     /// The warp where u of the first texture coordinates is constant, the weft where v is: as in the pattern of a garment. In triangles
     /// without texture coordinates along the edges.
     #[default]
@@ -110,7 +110,7 @@ pub enum MeshThreads {
 pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
     weld_distance: f32,
-    threads: MeshThreads,
+    threads: ClothMeshThreads,
     /// Number of cloths that had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
@@ -211,7 +211,7 @@ pub(super) fn cloth_from_mesh(
             &mut status,
             entity,
             &parallel_commands,
-            ErrorSource::Mesh,
+            ClothErrorSource::Mesh,
             errors,
         );
     }
@@ -306,7 +306,7 @@ fn make(
             return Ok(None);
         };
         append(mesh, part.to_cloth, &mut positions, &mut indices)?;
-        if from_mesh.threads == MeshThreads::Uvs {
+        if from_mesh.threads == ClothMeshThreads::Uvs {
             uvs.extend(texture_coordinates(mesh));
         }
         meshes.push(mesh);
@@ -348,7 +348,7 @@ fn held(
     positions: &[Vec3],
     indices: &[u32],
 ) -> Result<Option<(ClothWeights, ClothPin)>, ClothErrorKind> {
-    if matches!(from_mesh.pins, MeshPins::None) {
+    if matches!(from_mesh.pins, ClothMeshPins::None) {
         return Ok(None);
     }
     let threshold = from_mesh.pins.threshold()?;
@@ -358,7 +358,7 @@ fn held(
         weights: repaired.weights(&weights),
     };
     let particles = weights.above(threshold).collect();
-    let pin = ClothPin::new(PinSelection::Particles(particles));
+    let pin = ClothPin::new(ClothSelection::Particles(particles));
     Ok(Some((weights, pin)))
 }
 

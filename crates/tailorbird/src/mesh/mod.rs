@@ -24,14 +24,14 @@ mod tangents_wanted;
 mod vertices;
 mod write;
 
-pub use binding::VertexBinding;
+pub use binding::ClothVertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
 pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
-pub use collider::ColliderFromMesh;
-pub use from_mesh::{ClothFromMesh, MeshThreads};
-pub use parts::MeshParts;
-pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
+pub use collider::ClothColliderFromMesh;
+pub use from_mesh::{ClothFromMesh, ClothMeshThreads};
+pub use parts::ClothMeshParts;
+pub use pins::{ATTRIBUTE_CLOTH_PIN, ClothColorChannel, ClothMeshPins};
 pub use previous::ATTRIBUTE_PREVIOUS_POSITION;
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};

@@ -10,7 +10,7 @@ use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
 use tailorbird_cloth::{
     cloth::Cloth,
-    error::{ClothErrorKind, ShapeError},
+    error::{ClothErrorKind, ClothShapeError},
 };
 
 use super::{
@@ -22,7 +22,7 @@ use super::{
 /// Meshes below an entity that become its cloth.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
-pub enum MeshParts {
+pub enum ClothMeshParts {
     /// All but those below an entity with a `Cloth` or [`ClothFromMesh`] of its own.
     #[default]
     All,
@@ -81,10 +81,14 @@ impl Finder<'_, '_> {
     ///
     /// # Errors
     /// When an asset did not load, or there are meshes below but none that is meant.
-    pub fn find(&self, entity: Entity, parts: &MeshParts) -> Result<Found, ClothErrorKind> {
+    pub fn find(&self, entity: Entity, parts: &ClothMeshParts) -> Result<Found, ClothErrorKind> {
         let (mut found, mut other_names, mut waits, mut scenes) =
             (Vec::new(), Vec::new(), false, 0);
-        let mut stack = vec![(entity, Affine3A::IDENTITY, matches!(parts, MeshParts::All))];
+        let mut stack = vec![(
+            entity,
+            Affine3A::IDENTITY,
+            matches!(parts, ClothMeshParts::All),
+        )];
         while let Some((node, to_cloth, mut meant)) = stack.pop() {
             let Ok((transform, name, mesh, part, scene, patch, complete, from_mesh, cloth)) =
                 self.nodes.get(node)
@@ -98,7 +102,7 @@ impl Finder<'_, '_> {
                 }
                 to_cloth *= transform.copied().unwrap_or_default().compute_affine();
             }
-            if let (MeshParts::Named(names), Some(name)) = (parts, name) {
+            if let (ClothMeshParts::Named(names), Some(name)) = (parts, name) {
                 meant |= names.iter().any(|wanted| wanted == name.as_str());
             }
             let children = self.children.get(node).ok();
@@ -210,12 +214,12 @@ pub(super) fn append(
     }
     let own = &mut indices[start..];
     if !own.len().is_multiple_of(3) {
-        return Err(ShapeError::IndexCount { value: own.len() }.into());
+        return Err(ClothShapeError::IndexCount { value: own.len() }.into());
     }
     let vertices = places.len();
     for (at, index) in own.iter_mut().enumerate() {
         if *index as usize >= vertices {
-            return Err(ShapeError::IndexOutOfRange {
+            return Err(ClothShapeError::IndexOutOfRange {
                 at,
                 value: *index,
                 vertices,

@@ -22,14 +22,14 @@ pub const ATTRIBUTE_CLOTH_PIN: MeshVertexAttribute = MeshVertexAttribute::new(
 #[derive(Clone, Default, Reflect)]
 #[reflect(opaque)]
 #[non_exhaustive]
-pub enum MeshPins {
+pub enum ClothMeshPins {
     /// None.
     #[default]
     None,
     /// Vertices whose colour is above a threshold.
     Color {
         /// Channel of the colour.
-        channel: ColorChannel,
+        channel: ClothColorChannel,
         /// The threshold [-].
         threshold: f32,
     },
@@ -48,7 +48,7 @@ pub enum MeshPins {
 
 /// A channel of a vertex colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-pub enum ColorChannel {
+pub enum ClothColorChannel {
     /// The first.
     #[default]
     Red,
@@ -60,12 +60,12 @@ pub enum ColorChannel {
     Alpha,
 }
 
-impl MeshPins {
+impl ClothMeshPins {
     /// The threshold of pins that are painted, unless another is given.
     pub const THRESHOLD: f32 = 0.5;
 
     /// Pins the vertices whose colour is above [`Self::THRESHOLD`] in a channel.
-    pub fn color(channel: ColorChannel) -> Self {
+    pub fn color(channel: ClothColorChannel) -> Self {
         Self::Color {
             channel,
             threshold: Self::THRESHOLD,
@@ -164,7 +164,7 @@ impl MeshPins {
     }
 }
 
-impl fmt::Debug for MeshPins {
+impl fmt::Debug for ClothMeshPins {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => f.write_str("None"),

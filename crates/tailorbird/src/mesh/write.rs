@@ -10,12 +10,12 @@ use bevy_mesh::Mesh;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
     frame::ClothFrame,
     normals::ClothNormals,
     particles::ClothParticles,
-    sleep::{ClothRest, ClothSeen},
+    sleep::{ClothSeen, ClothSleepState},
     step::ClothStep,
     topology::ClothTopology,
 };
@@ -104,12 +104,16 @@ pub(super) fn follow_cloth(
     step: Option<Res<ClothStep>>,
     mut cloths: Query<(
         &mut ClothMesh,
-        &ClothRest,
+        &ClothSleepState,
         &ClothParticles,
         &ClothNormals,
         &ClothTopology,
         &ClothFrame,
-        (&AttachedParticles, &GlobalTransform, &mut ClothDrawnHolds),
+        (
+            &ClothAttachedParticles,
+            &GlobalTransform,
+            &mut ClothDrawnHolds,
+        ),
     )>,
     places: Query<&GlobalTransform>,
     seen: Query<&ViewVisibility>,

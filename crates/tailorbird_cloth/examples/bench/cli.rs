@@ -73,7 +73,7 @@ pub enum Isa {
     Avx512,
 }
 
-impl From<Isa> for InstructionSet {
+impl From<Isa> for ClothInstructionSet {
     fn from(isa: Isa) -> Self {
         match isa {
             Isa::Auto => Self::Auto,

@@ -104,13 +104,13 @@ fn measure(cloths: u32, size: u32, steps: u32, add: Systems) -> f64 {
     let step = fixed.timestep();
     app.insert_resource(fixed)
         .insert_resource(TimeUpdateStrategy::ManualDuration(step))
-        .insert_resource(Wind::vacuum());
+        .insert_resource(ClothWind::vacuum());
     add(&mut app);
     for k in 0..cloths {
         app.world_mut().spawn((
             Cloth::grid(Vec2::splat(2.0), UVec2::splat(size)),
             ClothMaterial::cotton(),
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
             ClothSleep::never(),
             Transform::from_xyz(3.0 * k as f32, 0.0, 0.0),
         ));

@@ -4,7 +4,7 @@ use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
 
 use tailorbird_solver::{
-    instruction_set::InstructionSet,
+    instruction_set::ClothInstructionSet,
     kernels::{
         breeze::{self, Breeze},
         contact::{Out, Phase, Touching},
@@ -27,7 +27,7 @@ use tailorbird_solver::{
     shape::ClothShape,
     topology::{Topology, lattice::Lattice},
     wall_clock::WallClock,
-    wind::{Turbulence, WindRegion},
+    wind::{ClothTurbulence, WindRegion},
 };
 
 /// The time of one kernel.
@@ -69,7 +69,7 @@ const SAMPLES: usize = 20;
 /// scalar with any.
 ///
 /// It takes about a tenth of a second for each million particles and kernel.
-pub fn measure(size: u32, instruction_set: InstructionSet) -> Vec<KernelTime> {
+pub fn measure(size: u32, instruction_set: ClothInstructionSet) -> Vec<KernelTime> {
     let level = instruction_set.level();
     let side = size.max(2);
     let mut times = Times {
@@ -264,9 +264,9 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
         let found = SharedPoints::new(&mut found);
         normals::smooth_lattice(level, &lattice, &position, found, 0..n);
     });
-    let turbulence = Turbulence {
+    let turbulence = ClothTurbulence {
         speed: 1.0,
-        ..Turbulence::default()
+        ..ClothTurbulence::default()
     };
     let breeze = Breeze {
         velocity: Vec3::X,
@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn every_kernel_takes_time() {
-        for instruction_set in [InstructionSet::Scalar, InstructionSet::Auto] {
+        for instruction_set in [ClothInstructionSet::Scalar, ClothInstructionSet::Auto] {
             let times = measure(20, instruction_set);
             assert_eq!(times.len(), 12);
             for time in times {

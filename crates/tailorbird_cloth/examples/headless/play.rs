@@ -86,7 +86,7 @@ impl Play {
         let particles = (0..).zip(positions).filter(|(_, p)| held(*p));
         let clip = ClothAttachment::particles(particles.map(|(i, _)| i));
         let post = world.spawn(Transform::default()).id();
-        world.spawn((clip.to(post), AttachmentOf(cloth)));
+        world.spawn((clip.to(post), ClothAttachmentOf(cloth)));
         self.actor = Some(post);
     }
 

@@ -67,8 +67,8 @@ impl Sheet {
             ..Default::default()
         })
         .insert_resource(match args.wind() {
-            Vec3::ZERO => Wind::vacuum(),
-            velocity => Wind::steady(velocity),
+            Vec3::ZERO => ClothWind::vacuum(),
+            velocity => ClothWind::steady(velocity),
         });
         if let Some(sphere) = args.sphere() {
             app.world_mut().spawn((
@@ -177,12 +177,12 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
     let (cloth, size) = (play::cloth(args), args.scene.size());
     let reach = 0.5 * size - mesh::NEAR;
     let pins = match (args.pins(), args.mesh) {
-        (Pins::Corners, Mesh::Grid) => ClothPins::corners(GridCorner::TOP),
-        (Pins::Edge, Mesh::Grid) => ClothPins::edges([GridEdge::Top]),
+        (Pins::Corners, Mesh::Grid) => ClothPins::corners(ClothCorner::TOP),
+        (Pins::Edge, Mesh::Grid) => ClothPins::edges([ClothEdge::Top]),
         (Pins::Corners, _) => {
             let corner = (0.5 * size).extend(0.0);
             let [left, right] = [corner * Vec3::new(-1.0, 1.0, 1.0), corner];
-            let within = |center| PinSelection::Within {
+            let within = |center| ClothSelection::Within {
                 center,
                 radius: mesh::NEAR,
             };

@@ -7,7 +7,7 @@ use tailorbird_solver::{
     pose::{Pose, motion},
 };
 
-use super::AttachedParticles;
+use super::ClothAttachedParticles;
 use crate::{frame::ClothFrame, particles::ClothParticles};
 
 /// The motion of a body, as seen from the frame at the start of the step. With the cloth's entity it may have been put elsewhere already.
@@ -19,7 +19,7 @@ fn motion_in(frame: &ClothFrame, from: &Pose, to: &Pose) -> Isometry3d {
     motion(&from, to, frame.isometry())
 }
 
-impl AttachedParticles {
+impl ClothAttachedParticles {
     /// The motion of the first body in this step, as seen from the frame at its start, where nothing else holds the cloth.
     pub(crate) fn motion_of_all(
         &self,

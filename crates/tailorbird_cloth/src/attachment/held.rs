@@ -17,9 +17,9 @@ use super::pose::pose_of;
 /// [`prepare_attachments`](super::prepare_attachments) alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct AttachedParticles(#[reflect(ignore)] pub(crate) Holds);
+pub struct ClothAttachedParticles(#[reflect(ignore)] pub(crate) Holds);
 
-impl Deref for AttachedParticles {
+impl Deref for ClothAttachedParticles {
     type Target = Holds;
 
     fn deref(&self) -> &Holds {
@@ -40,7 +40,7 @@ pub struct HeldPoint {
     pub point: Vec3,
 }
 
-impl AttachedParticles {
+impl ClothAttachedParticles {
     /// The particles that are held rigidly.
     pub fn rigid(&self) -> impl ExactSizeIterator<Item = HeldPoint> + '_ {
         self.0.rigid.iter().map(|hold| {

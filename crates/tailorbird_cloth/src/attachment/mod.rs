@@ -1,7 +1,7 @@
 //! Particles that are held by another entity: a hand, a flagpole, a bone of an animated skeleton.
 //!
-//! An attachment is an entity of its own. It belongs to a cloth ([`AttachmentOf`], listed in [`ClothAttachments`]), is held by
-//! any entity that has a `Transform` ([`AttachedTo`], listed in [`Attachments`]), and says what it holds
+//! An attachment is an entity of its own. It belongs to a cloth ([`ClothAttachmentOf`], listed in [`ClothAttachments`]), is held by
+//! any entity that has a `Transform` ([`ClothAttachedTo`], listed in [`ClothAttachmentsHeld`]), and says what it holds
 //! ([`ClothAttachment`]):
 //!
 //! ```
@@ -14,7 +14,7 @@
 //!     commands.spawn((
 //!         Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(48, 32)),
 //!         Transform::from_xyz(0.0, 2.0, 0.0),
-//!         related!(ClothAttachments[ClothAttachment::edge(GridEdge::Left).to(pole)]),
+//!         related!(ClothAttachments[ClothAttachment::edge(ClothEdge::Left).to(pole)]),
 //!     ));
 //! }
 //! ```
@@ -26,13 +26,13 @@
 //! # use bevy_math::Vec3;
 //! # use tailorbird_cloth::prelude::*;
 //! fn clip_on(mut commands: Commands, cloth: Entity, hand: Entity) {
-//!     let clip = ClothAttachment::corner(GridCorner::TopLeft)
+//!     let clip = ClothAttachment::corner(ClothCorner::TopLeft)
 //!         .with_points([Vec3::new(0.0, 0.05, 0.0)])
 //!         .with_break_force(30.0);
-//!     commands.spawn((clip.to(hand), AttachmentOf(cloth)));
+//!     commands.spawn((clip.to(hand), ClothAttachmentOf(cloth)));
 //! }
 //!
-//! fn on_break(broken: On<AttachmentBroken>) {
+//! fn on_break(broken: On<ClothAttachmentBroken>) {
 //!     println!("{} lost its hold at {} N", broken.entity, broken.force.length());
 //! }
 //! ```
@@ -48,8 +48,8 @@
 //! together, whatever the number of particles. It is solved together with the lines, so that it adds no stretch. An attachment with a
 //! **break force** is a spring as stiff as it can be measured: at the break force it gives way by [`ClothAttachment::GIVE`].
 //!
-//! [`AttachmentForce`] has the force that it carries, a mean over the step. If the force exceeds the break force, or the entity that
-//! holds it is despawned, the attachment is despawned and [`AttachmentBroken`] triggered for the cloth; the particles fly
+//! [`ClothAttachmentForce`] has the force that it carries, a mean over the step. If the force exceeds the break force, or the entity that
+//! holds it is despawned, the attachment is despawned and [`ClothAttachmentBroken`] triggered for the cloth; the particles fly
 //! on with the velocity that they have. A cloth takes its attachments with it when it is despawned.
 //!
 //! If several holders have the same particle, a pin ([`ClothPins`](crate::pins::ClothPins)) counts before an attachment, a rigid
@@ -66,16 +66,16 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::pose::Pose;
 
-pub use held::{AttachedParticles, HeldPoint};
+pub use held::{ClothAttachedParticles, HeldPoint};
 pub use prepare::{break_attachments, prepare_attachments};
 
 use crate::{
     error::{ClothErrorKind, ClothStatus},
-    pins::{GridCorner, GridEdge, PinSelection},
-    sampling::SampledMotion,
+    pins::{ClothCorner, ClothEdge, ClothSelection},
+    sampling::ClothSampledMotion,
 };
 
-/// Holds particles of a cloth at an entity. Needs [`AttachmentOf`] and [`AttachedTo`]. See the [module](self).
+/// Holds particles of a cloth at an entity. Needs [`ClothAttachmentOf`] and [`ClothAttachedTo`]. See the [module](self).
 ///
 /// Change it at any time. A value that is wrong is reported in the [`ClothStatus`] of this entity, and the last valid ones
 /// stay in force.
@@ -84,12 +84,12 @@ use crate::{
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(AttachmentState, AttachmentForce, ClothStatus)]
+#[require(ClothAttachmentState, ClothAttachmentForce, ClothStatus)]
 pub struct ClothAttachment {
     /// Selections of particles. A wrong selection is reported and left out.
-    pub selections: Vec<PinSelection>,
+    pub selections: Vec<ClothSelection>,
     /// Points of the entity at which the particles are held.
-    pub offset: AttachmentOffset,
+    pub offset: ClothAttachmentOffset,
     /// Compliance of the whole attachment [m/N]; 0, the default, is rigid.
     pub compliance: f32,
     /// Largest force that it carries, as a mean over a step \[N\]. `None`, the default: any force.
@@ -101,7 +101,7 @@ pub struct ClothAttachment {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
-pub enum AttachmentOffset {
+pub enum ClothAttachmentOffset {
     /// Positions of the particles, relative to the entity, when they are attached (at rest, for a new cloth).
     #[default]
     Keep,
@@ -116,12 +116,12 @@ pub enum AttachmentOffset {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[relationship(relationship_target = ClothAttachments)]
-pub struct AttachmentOf(pub Entity);
+pub struct ClothAttachmentOf(pub Entity);
 
 /// The attachments of a cloth. They are despawned with it.
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
-#[relationship_target(relationship = AttachmentOf, linked_spawn)]
+#[relationship_target(relationship = ClothAttachmentOf, linked_spawn)]
 pub struct ClothAttachments(Vec<Entity>);
 
 /// The entity that holds an attachment. It needs a `Transform`; its parents and its scale count.
@@ -129,15 +129,15 @@ pub struct ClothAttachments(Vec<Entity>);
 #[reflect(Component)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[relationship(relationship_target = Attachments)]
-pub struct AttachedTo(pub Entity);
+#[relationship(relationship_target = ClothAttachmentsHeld)]
+pub struct ClothAttachedTo(pub Entity);
 
 /// The attachments that an entity holds. They break when it is despawned.
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
-#[relationship_target(relationship = AttachedTo)]
-#[require(SampledMotion)]
-pub struct Attachments(Vec<Entity>);
+#[relationship_target(relationship = ClothAttachedTo)]
+#[require(ClothSampledMotion)]
+pub struct ClothAttachmentsHeld(Vec<Entity>);
 
 /// Force of the cloth on the target of an attachment that has a compliance or a break force; 0 for a rigid one, whose part in
 /// [`ClothPinForces`](crate::reaction::ClothPinForces) is not told apart.
@@ -145,14 +145,14 @@ pub struct Attachments(Vec<Entity>);
 /// Written by [`break_attachments`] alone.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
-pub struct AttachmentForce {
+pub struct ClothAttachmentForce {
     /// Sum over its particles, mean over the last step, in world axes \[N\].
     pub force: Vec3,
 }
 
 /// Event for the end of an attachment: it was pulled too hard, or its target was despawned. Triggered for the cloth.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Reflect)]
-pub struct AttachmentBroken {
+pub struct ClothAttachmentBroken {
     /// The cloth.
     pub entity: Entity,
     /// The attachment; it is despawned after its observers have run.
@@ -162,16 +162,16 @@ pub struct AttachmentBroken {
     /// Force that the attachment carried in the last step, in world axes \[N\]; 0 for a rigid one.
     pub force: Vec3,
     /// Reason.
-    pub reason: BreakReason,
+    pub reason: ClothBreakReason,
 }
 
 /// Reason why an attachment broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
-pub enum BreakReason {
+pub enum ClothBreakReason {
     /// The attachment carried more than [`ClothAttachment::break_force`].
     Force,
-    /// The entity that held it was despawned, or [`AttachedTo`] was removed.
+    /// The entity that held it was despawned, or [`ClothAttachedTo`] was removed.
     TargetGone,
 }
 
@@ -180,7 +180,7 @@ impl ClothAttachment {
     pub const GIVE: f32 = 2e-5;
 
     /// Holds particles rigidly where they are.
-    pub fn new(selection: PinSelection) -> Self {
+    pub fn new(selection: ClothSelection) -> Self {
         Self {
             selections: vec![selection],
             ..Self::default()
@@ -188,31 +188,34 @@ impl ClothAttachment {
     }
 
     /// Holds a corner of a grid.
-    pub fn corner(corner: GridCorner) -> Self {
-        Self::new(PinSelection::Corner(corner))
+    pub fn corner(corner: ClothCorner) -> Self {
+        Self::new(ClothSelection::Corner(corner))
     }
 
     /// Holds an edge of a grid.
-    pub fn edge(edge: GridEdge) -> Self {
-        Self::new(PinSelection::Edge(edge))
+    pub fn edge(edge: ClothEdge) -> Self {
+        Self::new(ClothSelection::Edge(edge))
     }
 
     /// Holds particles by index.
     pub fn particles(particles: impl IntoIterator<Item = u32>) -> Self {
         Self {
-            selections: particles.into_iter().map(PinSelection::Particle).collect(),
+            selections: particles
+                .into_iter()
+                .map(ClothSelection::Particle)
+                .collect(),
             ..Self::default()
         }
     }
 
     /// Holds every particle that lies within a ball (in the cloth's frame \[m\]) at rest.
     pub fn within(center: Vec3, radius: f32) -> Self {
-        Self::new(PinSelection::Within { center, radius })
+        Self::new(ClothSelection::Within { center, radius })
     }
 
     /// Sets points of the entity's own space \[m\]: one for each particle, or one for all.
     pub fn with_points(self, points: impl IntoIterator<Item = Vec3>) -> Self {
-        let offset = AttachmentOffset::Points(points.into_iter().collect());
+        let offset = ClothAttachmentOffset::Points(points.into_iter().collect());
         Self { offset, ..self }
     }
 
@@ -230,8 +233,8 @@ impl ClothAttachment {
     }
 
     /// Bundle of the attachment and the entity that holds it.
-    pub fn to(self, target: Entity) -> (Self, AttachedTo) {
-        (self, AttachedTo(target))
+    pub fn to(self, target: Entity) -> (Self, ClothAttachedTo) {
+        (self, ClothAttachedTo(target))
     }
 
     /// Errors in the values. Errors in the selections depend on the cloth.
@@ -251,8 +254,8 @@ impl ClothAttachment {
             )
         });
         let points = match &self.offset {
-            AttachmentOffset::Keep => None,
-            AttachmentOffset::Points(points) => points
+            ClothAttachmentOffset::Keep => None,
+            ClothAttachmentOffset::Points(points) => points
                 .iter()
                 .find_map(|p| ClothErrorKind::vector("ClothAttachment.offset", *p)),
         };
@@ -272,7 +275,7 @@ impl ClothAttachment {
 /// Particles and target of an attachment, found when it or the cloth changes. Written by [`prepare_attachments`] alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct AttachmentState {
+pub struct ClothAttachmentState {
     /// The last values that were valid.
     valid: Option<ClothAttachment>,
     /// Particles in storage order, and their points in the target's own space \[m\].

@@ -6,18 +6,18 @@ use bevy_transform::components::GlobalTransform;
 use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
 
 use super::{
-    AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
-    AttachmentOffset, AttachmentState, BreakReason, ClothAttachment, ClothAttachments,
-    pose::pose_of,
+    ClothAttachedParticles, ClothAttachedTo, ClothAttachment, ClothAttachmentBroken,
+    ClothAttachmentForce, ClothAttachmentOf, ClothAttachmentOffset, ClothAttachmentState,
+    ClothAttachments, ClothBreakReason, pose::pose_of,
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::ClothFrame,
-    inertia::{ClothTeleported, TeleportMode},
+    inertia::{ClothTeleportMode, ClothTeleported},
     particles::ClothParticles,
-    sampling::{SampledPose, SampledPoses, excess},
-    sleep::ClothRest,
+    sampling::{ClothSampledPoses, SampledPose, excess},
+    sleep::ClothSleepState,
     step::ClothStep,
     topology::ClothTopology,
 };
@@ -28,16 +28,16 @@ use crate::{
 /// was.
 pub fn prepare_attachments(
     step: Res<ClothStep>,
-    poses: SampledPoses,
+    poses: ClothSampledPoses,
     mut cloths: Query<
         (
             Entity,
             Option<&ClothAttachments>,
             &ClothTopology,
             &ClothFrame,
-            &ClothRest,
+            &ClothSleepState,
             &mut ClothParticles,
-            &mut AttachedParticles,
+            &mut ClothAttachedParticles,
         ),
         With<Cloth>,
     >,
@@ -45,23 +45,26 @@ pub fn prepare_attachments(
         (
             Entity,
             Ref<ClothAttachment>,
-            Option<&AttachedTo>,
-            &AttachmentForce,
-            &mut AttachmentState,
+            Option<&ClothAttachedTo>,
+            &ClothAttachmentForce,
+            &mut ClothAttachmentState,
             &mut ClothStatus,
         ),
-        With<AttachmentOf>,
+        With<ClothAttachmentOf>,
     >,
-    mut orphans: Query<(Entity, &mut ClothStatus), (With<ClothAttachment>, Without<AttachmentOf>)>,
+    mut orphans: Query<
+        (Entity, &mut ClothStatus),
+        (With<ClothAttachment>, Without<ClothAttachmentOf>),
+    >,
     commands: ParallelCommands,
 ) {
     for (entity, mut status) in &mut orphans {
-        let error = ClothErrorKind::unrelated("AttachmentOf");
+        let error = ClothErrorKind::unrelated("ClothAttachmentOf");
         ClothStatus::update(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Attachment,
+            ClothErrorSource::Attachment,
             [error],
         );
     }
@@ -86,20 +89,20 @@ pub fn prepare_attachments(
                 state.valid = Some(ClothAttachment::clone(&data));
                 state.stale = true;
             }
-            let Some(&AttachedTo(target)) = to else {
+            let Some(&ClothAttachedTo(target)) = to else {
                 if let Some(target) = state.target {
-                    let broken = AttachmentBroken {
+                    let broken = ClothAttachmentBroken {
                         entity: cloth,
                         attachment,
                         target,
                         force: carried.force,
-                        reason: BreakReason::TargetGone,
+                        reason: ClothBreakReason::TargetGone,
                     };
                     commands.command_scope(|commands| give_up(commands, broken));
                 } else {
-                    errors.push(ClothErrorKind::unrelated("AttachedTo"));
+                    errors.push(ClothErrorKind::unrelated("ClothAttachedTo"));
                 }
-                let source = ErrorSource::Attachment;
+                let source = ClothErrorSource::Attachment;
                 ClothStatus::update(&mut status, entity, &commands, source, errors);
                 continue;
             };
@@ -129,7 +132,7 @@ pub fn prepare_attachments(
                 }
             };
             errors.extend(state.wrong.iter().cloned());
-            let source = ErrorSource::Attachment;
+            let source = ClothErrorSource::Attachment;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
             // Particles of another topology mean nothing in this one.
             let resolved = state.target.is_some() && state.revision == topology.revision;
@@ -194,7 +197,7 @@ pub fn prepare_attachments(
             if moved && teleported {
                 let teleported = ClothTeleported {
                     entity: cloth,
-                    mode: TeleportMode::KeepShape,
+                    mode: ClothTeleportMode::KeepShape,
                 };
                 commands.command_scope(|mut commands| commands.trigger(teleported));
             }
@@ -217,7 +220,7 @@ pub fn prepare_attachments(
     }
 }
 
-impl AttachmentState {
+impl ClothAttachmentState {
     /// Finds the particles, and where they are held.
     fn resolve(
         &mut self,
@@ -238,11 +241,11 @@ impl AttachmentState {
             }
         }
         // Those that stay held by the same stay at their points.
-        let stay = data.offset == AttachmentOffset::Keep
+        let stay = data.offset == ClothAttachmentOffset::Keep
             && self.target == Some(target)
             && self.revision == topology.revision;
         // Those of a cloth that grows grow with it.
-        let grown = data.offset == AttachmentOffset::Keep
+        let grown = data.offset == ClothAttachmentOffset::Keep
             && self.target == Some(target)
             && self.particles == topology.particles()
             && self.scale != topology.scale;
@@ -264,8 +267,8 @@ impl AttachmentState {
         };
         let stay = stay || grown;
         let point = |k: usize, i: u32| match &data.offset {
-            AttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
-            AttachmentOffset::Keep => {
+            ClothAttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
+            ClothAttachmentOffset::Keep => {
                 let mut before = before.iter().filter(|_| stay);
                 let kept = before.find(|(particle, _)| *particle == i);
                 Some(kept.map_or_else(
@@ -274,7 +277,7 @@ impl AttachmentState {
                 ))
             }
         };
-        if let AttachmentOffset::Points(points) = &data.offset
+        if let ClothAttachmentOffset::Points(points) = &data.offset
             && points.len() != 1
             && points.len() != selected.len()
         {
@@ -324,8 +327,8 @@ impl AttachmentState {
 
 /// Tells what the springs carried in the step, and breaks those that carried too much.
 pub fn break_attachments(
-    mut cloths: Query<(Entity, &ClothRest, &mut AttachedParticles), With<Cloth>>,
-    mut attachments: Query<(&AttachmentState, &mut AttachmentForce)>,
+    mut cloths: Query<(Entity, &ClothSleepState, &mut ClothAttachedParticles), With<Cloth>>,
+    mut attachments: Query<(&ClothAttachmentState, &mut ClothAttachmentForce)>,
     mut commands: Commands,
 ) {
     for (cloth, rest, mut attached) in &mut cloths {
@@ -339,15 +342,15 @@ pub fn break_attachments(
             };
             let force = body.pulled / body.substeps.max(1) as f32;
             (body.pulled, body.substeps) = (Vec3::ZERO, 0);
-            carried.set_if_neq(AttachmentForce { force });
+            carried.set_if_neq(ClothAttachmentForce { force });
             let most = state.valid.as_ref().and_then(|valid| valid.break_force);
             if most.is_some_and(|most| force.length() > most) {
-                let broken = AttachmentBroken {
+                let broken = ClothAttachmentBroken {
                     entity: cloth,
                     attachment: Entity::from_bits(body.attachment),
                     target: Entity::from_bits(body.target),
                     force,
-                    reason: BreakReason::Force,
+                    reason: ClothBreakReason::Force,
                 };
                 give_up(commands.reborrow(), broken);
             }
@@ -356,7 +359,7 @@ pub fn break_attachments(
 }
 
 /// Tells observers, then despawns the attachment.
-fn give_up(mut commands: Commands, broken: AttachmentBroken) {
+fn give_up(mut commands: Commands, broken: ClothAttachmentBroken) {
     commands.trigger(broken);
     if let Ok(mut attachment) = commands.get_entity(broken.attachment) {
         attachment.try_despawn();

@@ -7,16 +7,16 @@ use tailorbird_solver::contact::colliders::Colliders;
 
 #[cfg(doc)]
 use super::snapshot_colliders;
-use super::{ColliderBody, solids::Solids};
+use super::{ClothColliderBody, solids::Solids};
 
 /// The scale of a collider. Written by [`snapshot_colliders`] alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct ColliderPose {
+pub struct ClothColliderState {
     scale: Vec3,
 }
 
-impl ColliderPose {
+impl ClothColliderState {
     /// A scale that differs by more than this part of it is another one: below that it is the rounding of something that
     /// turns, which must not make a mesh or hull of another size of each step.
     const SAME_SCALE: f32 = 1e-5;
@@ -37,7 +37,7 @@ pub struct ClothColliders {
     /// Colliders in the form of the solver.
     pub(crate) list: Colliders,
     /// The bodies that cloth pushes, in the order of entities.
-    pub(super) bodies: Vec<ColliderBody>,
+    pub(super) bodies: Vec<ClothColliderBody>,
     pub(super) solids: Solids,
 }
 

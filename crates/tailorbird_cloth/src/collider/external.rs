@@ -3,19 +3,19 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Vec3};
 
-use super::{ClothLayers, ColliderShape};
+use super::{ClothColliderShape, ClothLayers};
 
 /// Colliders of this step that come from elsewhere, such as a physics engine. Push to it in each step, before
 /// [`ClothSystems::Prepare`](crate::schedule::ClothSystems::Prepare);
 /// [`snapshot_colliders`](super::snapshot_colliders) takes them out.
 #[derive(Resource, Debug, Default)]
-pub struct ExternalColliders {
-    pub(crate) colliders: Vec<ExternalCollider>,
+pub struct ClothExternalColliders {
+    pub(crate) colliders: Vec<ClothExternalCollider>,
 }
 
-impl ExternalColliders {
+impl ClothExternalColliders {
     /// Adds a collider to the step that comes next.
-    pub fn push(&mut self, collider: ExternalCollider) {
+    pub fn push(&mut self, collider: ClothExternalCollider) {
         self.colliders.push(collider);
     }
 
@@ -32,13 +32,13 @@ impl ExternalColliders {
 
 /// A collider for one step, given by its motion.
 #[derive(Clone, Debug)]
-pub struct ExternalCollider {
+pub struct ClothExternalCollider {
     /// Owner: errors are reported for this entity.
     pub entity: Entity,
     /// Index among the entity's colliders.
     pub part: u32,
     /// Its shape around its pose. Cloning one is cheap.
-    pub shape: ColliderShape,
+    pub shape: ClothColliderShape,
     /// Coulomb friction [-]. The geometric mean with the material's counts.
     pub friction: f32,
     /// Distance that is kept from it besides the cloth's own thickness \[m\].
@@ -50,12 +50,12 @@ pub struct ExternalCollider {
     /// Pose at the end of the step, unless cloth moves it.
     pub end: Isometry3d,
     /// The body that cloth pushes, if any. `None` is moved by nothing.
-    pub body: Option<ColliderBody>,
+    pub body: Option<ClothColliderBody>,
 }
 
 /// The rigid body that a collider is part of. Colliders of one body give the same values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColliderBody {
+pub struct ClothColliderBody {
     /// Entity of the body, by which [`ClothReactions`](super::ClothReactions) names it.
     pub body: Entity,
     /// 1/mass along the axes of the world [1/kg]; 0 where it cannot move.

@@ -3,10 +3,10 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
-use super::{ClothColliders, ExternalColliders};
+use super::{ClothColliders, ClothExternalColliders};
 use crate::{cloth::Cloth, particles::ClothParticles, step::ClothStep};
 
-/// Effect of cloth on bodies in the last step: for each [`ColliderBody`](super::ColliderBody) that a cloth touched, after
+/// Effect of cloth on bodies in the last step: for each [`ClothColliderBody`](super::ClothColliderBody) that a cloth touched, after
 /// [`ClothSystems::Simulate`](crate::schedule::ClothSystems::Simulate).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ClothReactions {
@@ -46,7 +46,7 @@ impl ClothReactions {
 /// Adds up the effect of all cloths on bodies, in the order of the cloths' entities. Without a step there is none.
 pub fn gather_reactions(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     mut reactions: ResMut<ClothReactions>,
     mut order: Local<Vec<Entity>>,
     mut cloths: Query<(Entity, &mut ClothParticles), With<Cloth>>,

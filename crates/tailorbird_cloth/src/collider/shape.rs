@@ -12,7 +12,7 @@ use crate::error::ClothErrorKind;
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
-pub enum ColliderShape {
+pub enum ClothColliderShape {
     /// A ball. Where the entity is scaled, the largest factor counts, as for all round shapes.
     Sphere {
         /// Radius \[m\].
@@ -62,7 +62,7 @@ pub enum ColliderShape {
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub struct Compound(Arc<[(Isometry3d, ColliderShape)]>);
+pub struct Compound(Arc<[(Isometry3d, ClothColliderShape)]>);
 
 impl Compound {
     /// These shapes at these places \[m\]. Compounds among them are taken apart.
@@ -70,7 +70,7 @@ impl Compound {
     /// # Errors
     /// [`ClothErrorKind::EmptyCompound`]; [`ClothErrorKind::Vector`] where a place is not finite.
     pub fn new(
-        parts: impl IntoIterator<Item = (Isometry3d, ColliderShape)>,
+        parts: impl IntoIterator<Item = (Isometry3d, ClothColliderShape)>,
     ) -> Result<Self, ClothErrorKind> {
         let mut flat = Vec::new();
         for (at, shape) in parts {
@@ -82,7 +82,7 @@ impl Compound {
                 });
             }
             match shape {
-                ColliderShape::Compound(inner) => {
+                ClothColliderShape::Compound(inner) => {
                     flat.extend(inner.0.iter().map(|(to, shape)| (at * *to, shape.clone())));
                 }
                 shape => flat.push((at, shape)),
@@ -95,12 +95,12 @@ impl Compound {
     }
 
     /// The shapes and their places \[m\].
-    pub fn parts(&self) -> &[(Isometry3d, ColliderShape)] {
+    pub fn parts(&self) -> &[(Isometry3d, ClothColliderShape)] {
         &self.0
     }
 }
 
-impl ColliderShape {
+impl ClothColliderShape {
     /// Errors in its measures.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let positive = |field: &str, value: f32| {

@@ -5,13 +5,13 @@ use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use tailorbird_solver::contact::colliders::{Body, ColliderId, MovingCollider};
 
 use super::{
-    ClothCollider, ClothColliders, ClothLayers, ColliderBody, ColliderPose, ColliderShape,
-    ExternalCollider, ExternalColliders, check,
+    ClothCollider, ClothColliderBody, ClothColliderShape, ClothColliderState, ClothColliders,
+    ClothExternalCollider, ClothExternalColliders, ClothLayers, check,
 };
 use crate::{
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::split,
-    sampling::SampledPoses,
+    sampling::ClothSampledPoses,
     step::ClothStep,
 };
 
@@ -21,7 +21,7 @@ struct Whole<'a> {
     entity: Entity,
     part: u32,
     scale: Vec3,
-    shape: &'a ColliderShape,
+    shape: &'a ClothColliderShape,
     friction: f32,
     margin: f32,
     layers: ClothLayers,
@@ -32,7 +32,7 @@ struct Whole<'a> {
 
 impl ClothColliders {
     fn add(&mut self, whole: &Whole) {
-        if let ColliderShape::Compound(compound) = whole.shape {
+        if let ClothColliderShape::Compound(compound) = whole.shape {
             for (k, (at, shape)) in compound.parts().iter().enumerate() {
                 let place = Isometry3d::new(Vec3::from(at.translation) * whole.scale, at.rotation);
                 self.add_part(whole, k as u32, shape, place);
@@ -42,7 +42,7 @@ impl ClothColliders {
         }
     }
 
-    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ColliderShape, at: Isometry3d) {
+    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ClothColliderShape, at: Isometry3d) {
         let (rotation, scale) = scaled_axes(whole.scale, at.rotation);
         let at = Isometry3d::new(at.translation, rotation);
         let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
@@ -64,7 +64,7 @@ impl ClothColliders {
     }
 
     /// The place of a body in the list of bodies.
-    fn body(&mut self, body: &ColliderBody) -> usize {
+    fn body(&mut self, body: &ClothColliderBody) -> usize {
         let found = self.bodies.binary_search_by_key(&body.body, |b| b.body);
         found.unwrap_or_else(|at| {
             self.bodies.insert(at, *body);
@@ -91,19 +91,19 @@ fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
     (rotation, side * Vec3::from(sizes))
 }
 
-/// Reads the poses of colliders at the start and at the end of the step, and takes those of [`ExternalColliders`].
+/// Reads the poses of colliders at the start and at the end of the step, and takes those of [`ClothExternalColliders`].
 ///
 /// A wrong collider, or one whose transform is not finite, is reported and left out.
 pub fn snapshot_colliders(
     step: Res<ClothStep>,
-    poses: SampledPoses,
+    poses: ClothSampledPoses,
     mut list: ResMut<ClothColliders>,
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     mut colliders: Query<(
         Entity,
         &ClothCollider,
         Option<&ClothLayers>,
-        &mut ColliderPose,
+        &mut ClothColliderState,
         &mut ClothStatus,
     )>,
     mut others: Query<&mut ClothStatus, Without<ClothCollider>>,
@@ -121,7 +121,7 @@ pub fn snapshot_colliders(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Collider,
+            ClothErrorSource::Collider,
             errors,
         );
         let Ok(sampled) = poses.get(entity) else {
@@ -133,7 +133,7 @@ pub fn snapshot_colliders(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Transform,
+            ClothErrorSource::Transform,
             error,
         );
         let (Ok((end, scale)), true) = (place, valid) else {
@@ -172,7 +172,7 @@ pub fn snapshot_colliders(
 
 fn take_external(
     list: &mut ClothColliders,
-    external: &mut ExternalColliders,
+    external: &mut ClothExternalColliders,
     step: u64,
     statuses: &mut Query<&mut ClothStatus, Without<ClothCollider>>,
     commands: &ParallelCommands,
@@ -213,7 +213,13 @@ fn take_external(
         }
         let entity = parts[0].entity;
         if let Ok(mut status) = statuses.get_mut(entity) {
-            ClothStatus::update(&mut status, entity, commands, ErrorSource::Collider, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                commands,
+                ClothErrorSource::Collider,
+                errors,
+            );
         } else if !errors.is_empty() {
             // They are reported in the next step.
             commands.command_scope(|mut commands| {
@@ -227,7 +233,7 @@ fn take_external(
 }
 
 /// Errors of a collider from elsewhere.
-fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
+fn external_errors(collider: &ClothExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
     let places = [collider.start, collider.end].into_iter().filter_map(|at| {
         let finite = at.translation.is_finite() && at.rotation.is_finite();
         (!finite).then(|| ClothErrorKind::Transform {
@@ -241,7 +247,7 @@ fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErr
 }
 
 /// Errors of a body.
-fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
+fn body_errors(body: &ClothColliderBody) -> impl Iterator<Item = ClothErrorKind> {
     let error = |field: &str, value: String, allowed: &str| ClothErrorKind::Body {
         field: field.into(),
         value,
@@ -259,9 +265,9 @@ fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
         error("inv_inertia", inertia.to_string(), allowed)
     });
     let vectors = [
-        ("ColliderBody.center_of_mass", body.center_of_mass),
-        ("ColliderBody.linear_velocity", body.linear_velocity),
-        ("ColliderBody.angular_velocity", body.angular_velocity),
+        ("ClothColliderBody.center_of_mass", body.center_of_mass),
+        ("ClothColliderBody.linear_velocity", body.linear_velocity),
+        ("ClothColliderBody.angular_velocity", body.angular_velocity),
     ];
     let vectors = vectors
         .into_iter()

@@ -9,8 +9,8 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use thiserror::Error;
 
-pub use status::{ClothStatus, ErrorSource};
-pub use tailorbird_solver::error::ShapeError;
+pub use status::{ClothErrorSource, ClothStatus};
+pub use tailorbird_solver::error::ClothShapeError;
 
 /// Something is wrong with a cloth or a collider.
 ///
@@ -38,7 +38,7 @@ pub struct ClothError {
 pub enum ClothErrorKind {
     /// The rest shape is wrong.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(#[from] ClothShapeError),
     /// A mesh asset cannot become a cloth.
     #[error(
         "Mesh3d {reason}, must be a triangle list with positions that is kept in the main world"
@@ -174,7 +174,7 @@ pub enum ClothErrorKind {
     #[error("ClothCollider compound has 0 parts, must have at least one")]
     EmptyCompound,
     /// The mass of a body that cloth is to push is wrong.
-    #[error("ColliderBody {field} is {value}, must be {allowed}")]
+    #[error("ClothColliderBody {field} is {value}, must be {allowed}")]
     Body {
         /// Name of the field.
         field: String,
@@ -200,7 +200,7 @@ pub enum ClothErrorKind {
         missing: String,
     },
     /// An attachment's target, or one of its parents, has no transform.
-    #[error("AttachedTo names {value}, which has no Transform, must have one")]
+    #[error("ClothAttachedTo names {value}, which has no Transform, must have one")]
     NoTransform {
         /// The entity without.
         value: Entity,

@@ -8,7 +8,7 @@ use super::{ClothError, ClothErrorKind};
 
 /// Check that an error came from; a check replaces its own errors alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-pub enum ErrorSource {
+pub enum ClothErrorSource {
     /// The mesh that a cloth is to be made of.
     Mesh,
     /// The rest shape.
@@ -29,8 +29,8 @@ pub enum ErrorSource {
     Transform,
     /// [`ClothCollider`](crate::collider::ClothCollider).
     Collider,
-    /// [`WindZone`](crate::wind::WindZone).
-    Wind,
+    /// [`ClothWindZone`](crate::wind::ClothWindZone).
+    ClothWind,
     /// [`ClothForces`](crate::forces::ClothForces).
     Forces,
     /// [`ClothInertia`](crate::inertia::ClothInertia).
@@ -46,7 +46,7 @@ pub enum ErrorSource {
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothStatus {
-    entries: Vec<(ErrorSource, ClothErrorKind)>,
+    entries: Vec<(ClothErrorSource, ClothErrorKind)>,
     strained: f32,
     stretched: f32,
 }
@@ -68,7 +68,7 @@ impl ClothStatus {
     /// It begins when 5 % of the edges are longer by 3 %, or one is twice as long as at rest, for half a second if something touches the
     /// cloth and for a second if nothing does; it ends when fewer than 1 % are (3 % of a sheet that is strained in one place alone). Air,
     /// forces and motion of more than 5 m/s count as loads, not as demands: see [`stretched`](Self::stretched). If it lasts, look for the
-    /// holders or bodies that cause it: [`AttachmentForce`](crate::attachment::AttachmentForce) and
+    /// holders or bodies that cause it: [`ClothAttachmentForce`](crate::attachment::ClothAttachmentForce) and
     /// [`ClothPinForces`](crate::reaction::ClothPinForces) tell who pulls. The cloth is whole again when [`stretched`](Self::stretched) is
     /// 0 as well.
     pub fn strained(&self) -> f32 {
@@ -95,7 +95,7 @@ impl ClothStatus {
     }
 
     /// Returns whether this check has found nothing.
-    pub(crate) fn is_ok_for(&self, source: ErrorSource) -> bool {
+    pub(crate) fn is_ok_for(&self, source: ClothErrorSource) -> bool {
         self.entries.iter().all(|(s, _)| *s != source)
     }
 
@@ -106,7 +106,7 @@ impl ClothStatus {
         status: &mut Mut<Self>,
         entity: Entity,
         commands: &ParallelCommands,
-        source: ErrorSource,
+        source: ClothErrorSource,
         found: impl IntoIterator<Item = ClothErrorKind>,
     ) {
         let mut found = found.into_iter().peekable();

@@ -7,7 +7,7 @@ use tailorbird_solver::particles::{Input, Particles, State};
 use super::{ClothForces, Impulse};
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::ClothFrame,
     particles::ClothParticles,
     step::ClothStep,
@@ -34,7 +34,13 @@ pub fn apply_forces(
         }
         particles.0.input.acceleration.clear();
         if forces.is_empty() {
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, None);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                &commands,
+                ClothErrorSource::Forces,
+                None,
+            );
             continue;
         }
         particles.0.state.effort.driven = f32::INFINITY;
@@ -81,7 +87,13 @@ pub fn apply_forces(
             particles.add_impulse(local, step.seconds());
         }
         forces.bypass_change_detection().clear();
-        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Forces, errors);
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ClothErrorSource::Forces,
+            errors,
+        );
     }
 }
 

@@ -10,10 +10,10 @@ use super::{
 use crate::{
     cloth::Cloth,
     collider::ClothColliders,
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     inertia::ClothInertia,
     particles::ClothParticles,
-    sampling::{SampledMotion, SampledPoses},
+    sampling::{ClothSampledMotion, ClothSampledPoses},
     stages::{ClothStages, run_stage},
     step::ClothStep,
 };
@@ -24,11 +24,11 @@ use crate::{
 /// it without the shear.
 pub fn prepare_frames(
     step: Res<ClothStep>,
-    poses: SampledPoses,
+    poses: ClothSampledPoses,
     mut cloths: Query<
         (
             Entity,
-            &SampledMotion,
+            &ClothSampledMotion,
             &mut ClothFrame,
             Ref<ClothInertia>,
             &ClothParticles,
@@ -50,7 +50,13 @@ pub fn prepare_frames(
             if errors.is_empty() {
                 frame.inertia = *inertia;
             }
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Inertia, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                &commands,
+                ClothErrorSource::Inertia,
+                errors,
+            );
         }
         let Ok(pose) = poses.get(entity) else {
             continue;
@@ -78,7 +84,7 @@ pub fn prepare_frames(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Transform,
+            ClothErrorSource::Transform,
             error,
         );
     }

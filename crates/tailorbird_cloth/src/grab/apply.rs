@@ -12,7 +12,7 @@ use tailorbird_solver::{
 use super::ClothGrab;
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::ClothFrame,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -86,7 +86,13 @@ pub fn apply_grab(
                 None
             }
         };
-        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Grab, error);
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ClothErrorSource::Grab,
+            error,
+        );
         if particles.grabbed() != before {
             particles.0.update_inv_masses();
         }

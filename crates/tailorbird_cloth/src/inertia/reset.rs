@@ -2,13 +2,13 @@
 
 use bevy_ecs::prelude::*;
 
-use super::{ClothTeleported, TeleportMode};
+use super::{ClothTeleportMode, ClothTeleported};
 use crate::{
-    cloth::Cloth, frame::ClothFrame, particles::ClothParticles, sleep::ClothRest,
+    cloth::Cloth, frame::ClothFrame, particles::ClothParticles, sleep::ClothSleepState,
     topology::ClothTopology,
 };
 
-/// Puts cloths that were teleported with [`TeleportMode::Reset`] into their rest shape.
+/// Puts cloths that were teleported with [`ClothTeleportMode::Reset`] into their rest shape.
 pub fn reset_teleported(
     mut cloths: Query<
         (
@@ -16,7 +16,7 @@ pub fn reset_teleported(
             &mut ClothFrame,
             &ClothTopology,
             &mut ClothParticles,
-            &mut ClothRest,
+            &mut ClothSleepState,
         ),
         With<Cloth>,
     >,
@@ -26,7 +26,7 @@ pub fn reset_teleported(
         let Some(mode) = frame.bypass_change_detection().take_teleport() else {
             continue;
         };
-        if mode == TeleportMode::Reset {
+        if mode == ClothTeleportMode::Reset {
             particles.0.reset_to_rest(topology);
             rest.wake();
         }

@@ -13,17 +13,17 @@ use tailorbird_solver::{
 };
 
 use super::{
-    ClothMotionConstraints, ClothMotionTargets, MotionState, PerParticle, TargetSamples,
-    TargetSpace, samples::TargetsAt,
+    ClothMotionConstraints, ClothMotionState, ClothMotionTargets, ClothPerParticle,
+    ClothTargetSamples, ClothTargetSpace, samples::TargetsAt,
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     frame::ClothFrame,
     particles::ClothParticles,
-    sampling::FrameClock,
+    sampling::ClothFrameClock,
     settings::ClothSettings,
-    sleep::ClothRest,
+    sleep::ClothSleepState,
     step::ClothStep,
     topology::ClothTopology,
 };
@@ -37,16 +37,16 @@ const STANDS: f32 = 1e-5;
 /// Reads the motion constraints where they changed, and the targets at the end of this step.
 pub fn prepare_motion(
     step: Res<ClothStep>,
-    (clock, settings): (Res<FrameClock>, Res<ClothSettings>),
+    (clock, settings): (Res<ClothFrameClock>, Res<ClothSettings>),
     mut cloths: Query<
         (
             Entity,
             Option<Ref<ClothMotionConstraints>>,
-            Option<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+            Option<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
             &ClothTopology,
             &ClothFrame,
-            &ClothRest,
-            &mut MotionState,
+            &ClothSleepState,
+            &mut ClothMotionState,
             &mut ClothParticles,
             &mut ClothStatus,
         ),
@@ -73,12 +73,12 @@ pub fn prepare_motion(
         motion.disturbed = false;
         let Some(constraints) = constraints else {
             motion.disturbed = !motion.limits.max_distance.is_empty();
-            *motion.bypass_change_detection() = MotionState {
+            *motion.bypass_change_detection() = ClothMotionState {
                 disturbed: motion.disturbed,
-                ..MotionState::default()
+                ..ClothMotionState::default()
             };
             particles.0.hold(HolderKind::Limit, []);
-            for source in [ErrorSource::Motion, ErrorSource::MotionTargets] {
+            for source in [ClothErrorSource::Motion, ClothErrorSource::MotionTargets] {
                 ClothStatus::update(&mut status, entity, &commands, source, None);
             }
             continue;
@@ -93,7 +93,7 @@ pub fn prepare_motion(
                 motion.held.clear();
             }
             motion.disturbed |= rebuilt;
-            let source = ErrorSource::Motion;
+            let source = ClothErrorSource::Motion;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
         if rebuilt {
@@ -103,14 +103,14 @@ pub fn prepare_motion(
             && (rebuilt || targets.is_changed())
         {
             let errors = targets.errors(topology.particles());
-            let source = ErrorSource::MotionTargets;
+            let source = ClothErrorSource::MotionTargets;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
         motion.revision = topology.revision;
         if step.running() {
             let mut elsewhere = std::mem::take(&mut motion.idle);
             let valid = targets.filter(|(targets, _)| {
-                !targets.positions.is_empty() && status.is_ok_for(ErrorSource::MotionTargets)
+                !targets.positions.is_empty() && status.is_ok_for(ClothErrorSource::MotionTargets)
             });
             // One that sleeps remembers where the targets were when it fell asleep, however slowly they creep away.
             if !rest.is_asleep() {
@@ -122,7 +122,7 @@ pub fn prepare_motion(
                 elsewhere |= samples.take_jump();
                 fixed = samples.are_fixed();
                 let at = samples.at(&targets, &clock, topology.particles());
-                let moves = targets.space == TargetSpace::World
+                let moves = targets.space == ClothTargetSpace::World
                     && (frame.is_moving() || frame.jump_turn().is_some());
                 if rebuilt || at.key != motion.aimed || moves {
                     motion.aim(targets.space, &at, topology, frame, step.level());
@@ -163,7 +163,7 @@ pub fn prepare_motion(
     }
 }
 
-impl MotionState {
+impl ClothMotionState {
     /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.limits.memory_bytes() + heap(&self.held)
@@ -195,7 +195,7 @@ impl MotionState {
         ]
         .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
-        let stored = |values: &PerParticle, none: f32| -> Numbers {
+        let stored = |values: &ClothPerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };
@@ -264,7 +264,7 @@ impl MotionState {
     /// Reads valid targets.
     fn aim(
         &mut self,
-        space: TargetSpace,
+        space: ClothTargetSpace,
         targets: &TargetsAt,
         topology: &Topology,
         frame: &ClothFrame,
@@ -272,8 +272,8 @@ impl MotionState {
     ) {
         self.aimed = targets.key;
         let (point, vector): (&dyn Fn(Vec3) -> Vec3, &dyn Fn(Vec3) -> Vec3) = match space {
-            TargetSpace::Frame => (&|p| p, &|v| v),
-            TargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
+            ClothTargetSpace::Frame => (&|p| p, &|v| v),
+            ClothTargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
                 frame.end.rotation.inverse() * v
             }),
         };

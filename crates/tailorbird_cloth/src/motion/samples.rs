@@ -8,10 +8,10 @@ use tailorbird_solver::{
     particles::{Input, Particles, State},
 };
 
-use super::{ClothMotionTargets, KEPT, MotionState, SeenTargets, TargetSamples};
+use super::{ClothMotionState, ClothMotionTargets, ClothTargetSamples, KEPT, SeenTargets};
 use crate::{
     particles::ClothParticles,
-    sampling::{FrameClock, FrameKind, LAPSE},
+    sampling::{ClothFrameClock, FrameKind, LAPSE},
     settings::ClothSettings,
 };
 
@@ -43,7 +43,7 @@ impl TargetsAt<'_> {
     }
 }
 
-impl TargetSamples {
+impl ClothTargetSamples {
     /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let lists = self
@@ -64,7 +64,11 @@ impl TargetSamples {
     }
 
     /// Notes at a step whether the fixed loop moved them.
-    pub(super) fn begin_step(&mut self, targets: &Ref<ClothMotionTargets>, clock: &FrameClock) {
+    pub(super) fn begin_step(
+        &mut self,
+        targets: &Ref<ClothMotionTargets>,
+        clock: &ClothFrameClock,
+    ) {
         if clock.is_looping() {
             self.fixed = self.fixed.saturating_sub(1);
             self.note_moves(targets.last_changed());
@@ -83,7 +87,7 @@ impl TargetSamples {
     pub(super) fn at<'a>(
         &'a self,
         targets: &'a Ref<ClothMotionTargets>,
-        clock: &FrameClock,
+        clock: &ClothFrameClock,
         particles: usize,
     ) -> TargetsAt<'a> {
         let moment = clock.moment();
@@ -146,7 +150,7 @@ impl TargetSamples {
     }
 }
 
-impl MotionState {
+impl ClothMotionState {
     /// Takes each particle along with its target, where that was put elsewhere.
     pub(super) fn take_along(&self, particles: &mut ClothParticles) {
         let [start, end] = &self.limits.targets;
@@ -174,9 +178,9 @@ impl MotionState {
 
 /// Notes where the targets are at the start of a frame.
 pub(crate) fn see_targets(
-    clock: Res<FrameClock>,
+    clock: Res<ClothFrameClock>,
     settings: Res<ClothSettings>,
-    mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
 ) {
     let speed = settings.valid_teleport_speed();
     for (targets, mut samples) in &mut cloths {
@@ -213,7 +217,7 @@ pub(crate) fn see_targets(
 
 /// Notes the targets before the fixed loop moves them.
 pub(crate) fn begin_fixed_targets(
-    mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
 ) {
     for (targets, mut samples) in &mut cloths {
         samples.began = Some(targets.last_changed());
@@ -221,7 +225,9 @@ pub(crate) fn begin_fixed_targets(
 }
 
 /// Notes which targets the fixed loop moved after cloth had stepped.
-pub(crate) fn end_fixed_targets(mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>) {
+pub(crate) fn end_fixed_targets(
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
+) {
     for (targets, mut samples) in &mut cloths {
         samples.note_moves(targets.last_changed());
     }

@@ -7,7 +7,7 @@ use tailorbird_solver::held::{Held, HeldBy, HolderKind};
 use super::ClothPins;
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     material::ClothMaterial,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -53,7 +53,13 @@ pub fn apply_pins(
                 Err(error) => errors.push(error),
             }
         }
-        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Pins, errors);
+        ClothStatus::update(
+            &mut status,
+            entity,
+            &commands,
+            ClothErrorSource::Pins,
+            errors,
+        );
         particles.set_pins(&held);
         let errors = material.errors();
         if errors.is_empty() {
@@ -67,7 +73,7 @@ pub fn apply_pins(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Material,
+            ClothErrorSource::Material,
             errors,
         );
     }

@@ -16,7 +16,7 @@ const HITCH: i64 = 100_000_000;
 /// The frames so far, and the moment that is sampled in the step in progress. In nanoseconds of `Time<Virtual>`, as frames that are
 /// equally long must give equal fractions.
 #[derive(Resource, Clone, Debug, Default)]
-pub struct FrameClock {
+pub struct ClothFrameClock {
     /// Times of the last places, the last frame first.
     times: [i64; DEPTH],
     known: usize,
@@ -75,7 +75,7 @@ fn nanoseconds(time: Duration) -> i64 {
     i64::try_from(time.as_nanos()).unwrap_or(i64::MAX)
 }
 
-impl FrameClock {
+impl ClothFrameClock {
     /// Event between the places of the last two frames.
     pub(crate) fn kind(&self) -> FrameKind {
         self.kind
@@ -207,14 +207,14 @@ mod tests {
     }
 
     /// The time that a moment stands for \[ns\].
-    fn time(clock: &FrameClock, moment: Moment) -> f64 {
+    fn time(clock: &ClothFrameClock, moment: Moment) -> f64 {
         let [_, _, older, newer] = moment.frames.map(|k| clock.times[k] as f64);
         older + f64::from(moment.part) * (newer - older)
     }
 
     #[test]
     fn a_step_at_the_end_of_each_frame_sees_things_as_they_are() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         for frame in 1..100 {
             clock.begin_frame(at(16_666_667 * frame), at(16_666_667));
             let moment = clock.moment_at(at(16_666_667 * frame));
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn after_a_hitch_the_delay_is_what_it_was() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         let mut end = 0;
         for frame in 0..40 {
             let length = if frame == 20 { 250_000_000 } else { 16_000_000 };
@@ -240,7 +240,7 @@ mod tests {
     /// Loading a level makes several frames long.
     #[test]
     fn long_frames_do_not_delay_what_comes_after_them_for_long() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         let (mut end, mut since) = (0, 0);
         for frame in 0..200 {
             let length = [250, 180, 200, 150]
@@ -259,7 +259,7 @@ mod tests {
         /// Whatever the frames do: never ahead of what is known, never back, and no faster than a tenth faster.
         #[test]
         fn what_is_sampled_passes_evenly(lengths in proptest::collection::vec(2_000_000i64..60_000_000, 3..60), hz in 30i64..240) {
-            let mut clock = FrameClock::default();
+            let mut clock = ClothFrameClock::default();
             let step = 1_000_000_000 / hz;
             let (mut end, mut next) = (0, step);
             let mut last: Option<f64> = None;
@@ -286,7 +286,7 @@ mod tests {
 
         #[test]
         fn frames_that_vary_a_little_are_sampled_at_their_own_speed(lengths in proptest::collection::vec(10_000_000i64..20_000_000, 60)) {
-            let mut clock = FrameClock::default();
+            let mut clock = ClothFrameClock::default();
             let step = 16_000_000;
             let (mut end, mut next) = (0, step);
             let mut last: Option<(f64, i64)> = None;

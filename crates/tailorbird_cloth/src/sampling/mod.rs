@@ -35,21 +35,21 @@
 //!
 //! A displacement whose velocity differs from the one before by more than that one's magnitude and
 //! [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) is a hop: at 60 frames a second half a metre for an
-//! entity that stood, at 30 one metre. All but the motion before it is carried. [`SampledMotion::teleport`] tells of a shorter one; it is a component of
+//! entity that stood, at 30 one metre. All but the motion before it is carried. [`ClothSampledMotion::teleport`] tells of a shorter one; it is a component of
 //! each cloth, collider and zone, of all holders of a cloth, and of all their parents:
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
 //! # use bevy_transform::components::Transform;
 //! # use tailorbird_cloth::prelude::*;
-//! fn climb(mut hands: Query<(&mut Transform, &mut SampledMotion)>) {
+//! fn climb(mut hands: Query<(&mut Transform, &mut ClothSampledMotion)>) {
 //!     for (mut transform, mut motion) in &mut hands {
 //!         transform.translation.y += 0.3;
 //!         motion.teleport();
 //!     }
 //! }
 //!
-//! fn tell(mut teleports: MessageReader<Teleported>) {
+//! fn tell(mut teleports: MessageReader<ClothMotionTeleported>) {
 //!     for teleport in teleports.read() {
 //!         println!("{} was put elsewhere", teleport.entity);
 //!     }
@@ -77,13 +77,13 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 
 pub(crate) use blow::excess;
+pub use clock::ClothFrameClock;
 use clock::DEPTH;
-pub use clock::FrameClock;
 pub(crate) use clock::FrameKind;
 use hop::take_along;
-pub use hop::{HopDetector, Teleported};
+pub use hop::{ClothHopDetector, ClothMotionTeleported};
+pub use poses::ClothSampledPoses;
 pub(crate) use poses::SampledPose;
-pub use poses::SampledPoses;
 pub(crate) use sample::{
     FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step, pass_on_teleports,
     sample_motion, sample_parents, see_frame,
@@ -96,7 +96,7 @@ pub(crate) const LAPSE: u8 = 15;
 /// [module](self).
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct SampledMotion {
+pub struct ClothSampledMotion {
     /// Transforms in the last frames, the last one first.
     #[reflect(ignore)]
     frames: [Transform; DEPTH],
@@ -111,7 +111,7 @@ pub struct SampledMotion {
     began: Transform,
     /// Number of steps for which translation, rotation and scale still count as moved by the fixed loop.
     fixed: [u8; 3],
-    hops: HopDetector,
+    hops: ClothHopDetector,
     parent: Option<Entity>,
     frame: u64,
     step: u64,
@@ -122,7 +122,7 @@ pub struct SampledMotion {
     teleported: bool,
 }
 
-impl SampledMotion {
+impl ClothSampledMotion {
     /// The entity is put elsewhere: whatever way it goes until the next step carries what cloth it holds, and is not felt.
     pub fn teleport(&mut self) {
         self.asked = true;

@@ -3,13 +3,13 @@
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_transform::components::{GlobalTransform, Transform};
 
-use super::SampledMotion;
+use super::ClothSampledMotion;
 
 /// Computes where entities are at both ends of the step: the one place that cloths, holders, colliders and zones are read from.
 #[derive(SystemParam)]
-pub struct SampledPoses<'w, 's> {
+pub struct ClothSampledPoses<'w, 's> {
     parents: Query<'w, 's, &'static ChildOf>,
-    places: Query<'w, 's, (&'static Transform, Option<&'static SampledMotion>)>,
+    places: Query<'w, 's, (&'static Transform, Option<&'static ClothSampledMotion>)>,
 }
 
 /// Poses of an entity at both ends of a step, in the world.
@@ -23,7 +23,7 @@ pub(crate) struct SampledPose {
     pub teleported: bool,
 }
 
-impl SampledPoses<'_, '_> {
+impl ClothSampledPoses<'_, '_> {
     /// Poses of an entity.
     ///
     /// # Errors

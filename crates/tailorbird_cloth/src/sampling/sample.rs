@@ -5,7 +5,8 @@ use bevy_time::{Fixed, Time, Virtual};
 use bevy_transform::{components::Transform, helper::TransformHelper};
 
 use super::{
-    FrameClock, FrameKind, LAPSE, SampledMotion, Teleported, clock::DEPTH, curve::between,
+    ClothFrameClock, ClothMotionTeleported, ClothSampledMotion, FrameKind, LAPSE, clock::DEPTH,
+    curve::between,
 };
 use crate::{frame::ClothFrame, settings::ClothSettings, step::ClothStep};
 
@@ -17,17 +18,17 @@ pub(crate) struct FixedLoopBegins;
 #[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct FixedLoopEnds;
 
-/// Puts [`SampledMotion`] on the parents of what has it.
+/// Puts [`ClothSampledMotion`] on the parents of what has it.
 pub(crate) fn sample_parents(
     new: Query<
         Entity,
         (
-            With<SampledMotion>,
-            Or<(Added<SampledMotion>, Changed<ChildOf>)>,
+            With<ClothSampledMotion>,
+            Or<(Added<ClothSampledMotion>, Changed<ChildOf>)>,
         ),
     >,
     parents: Query<&ChildOf>,
-    unsampled: Query<(), (With<Transform>, Without<SampledMotion>)>,
+    unsampled: Query<(), (With<Transform>, Without<ClothSampledMotion>)>,
     mut commands: Commands,
 ) {
     for entity in &new {
@@ -35,7 +36,7 @@ pub(crate) fn sample_parents(
             if unsampled.contains(parent) {
                 commands
                     .entity(parent)
-                    .try_insert_if_new(SampledMotion::default());
+                    .try_insert_if_new(ClothSampledMotion::default());
             }
         }
     }
@@ -45,7 +46,7 @@ pub(crate) fn sample_parents(
 pub(crate) fn pass_on_teleports(
     frames: Query<(Entity, &ClothFrame)>,
     parents: Query<&ChildOf>,
-    mut motions: Query<&mut SampledMotion>,
+    mut motions: Query<&mut ClothSampledMotion>,
 ) {
     for (entity, _) in frames.iter().filter(|(_, frame)| frame.is_asked()) {
         for entity in std::iter::once(entity).chain(parents.iter_ancestors(entity)) {
@@ -58,15 +59,15 @@ pub(crate) fn pass_on_teleports(
 
 /// Notes where things are at the start of a frame, before its steps: where the frame before left them.
 pub(crate) fn see_frame(
-    mut clock: ResMut<FrameClock>,
+    mut clock: ResMut<ClothFrameClock>,
     time: Res<Time<Virtual>>,
     settings: Res<ClothSettings>,
     helper: TransformHelper,
-    mut things: Query<(&Transform, Option<&ChildOf>, &mut SampledMotion)>,
+    mut things: Query<(&Transform, Option<&ChildOf>, &mut ClothSampledMotion)>,
 ) {
     clock.begin_frame(time.elapsed(), time.delta());
     let speed = settings.valid_teleport_speed();
-    let FrameClock {
+    let ClothFrameClock {
         kind,
         frame,
         replaces,
@@ -119,8 +120,8 @@ fn metre_of(parent: Option<Entity>, helper: &TransformHelper) -> f32 {
 
 /// Notes where things are before the fixed loop moves them.
 pub(crate) fn begin_fixed_step(
-    mut clock: ResMut<FrameClock>,
-    mut things: Query<(&Transform, &mut SampledMotion)>,
+    mut clock: ResMut<ClothFrameClock>,
+    mut things: Query<(&Transform, &mut ClothSampledMotion)>,
 ) {
     clock.looping = true;
     for (place, mut motion) in &mut things {
@@ -130,8 +131,8 @@ pub(crate) fn begin_fixed_step(
 
 /// Notes what the fixed loop moved after cloth had stepped.
 pub(crate) fn end_fixed_step(
-    mut clock: ResMut<FrameClock>,
-    mut things: Query<(&Transform, &mut SampledMotion)>,
+    mut clock: ResMut<ClothFrameClock>,
+    mut things: Query<(&Transform, &mut ClothSampledMotion)>,
 ) {
     clock.looping = false;
     for (place, mut motion) in &mut things {
@@ -141,19 +142,24 @@ pub(crate) fn end_fixed_step(
 
 /// Finds out where things are at both ends of the step.
 pub(crate) fn sample_motion(
-    mut clock: ResMut<FrameClock>,
+    mut clock: ResMut<ClothFrameClock>,
     step: Res<ClothStep>,
     (time, fixed): (Option<Res<Time<Virtual>>>, Option<Res<Time<Fixed>>>),
     settings: Res<ClothSettings>,
     helper: TransformHelper,
-    mut things: Query<(Entity, &Transform, Option<&ChildOf>, &mut SampledMotion)>,
-    mut messages: MessageWriter<Teleported>,
+    mut things: Query<(
+        Entity,
+        &Transform,
+        Option<&ChildOf>,
+        &mut ClothSampledMotion,
+    )>,
+    mut messages: MessageWriter<ClothMotionTeleported>,
 ) {
     clock.step += 1;
     if let (Some(time), Some(fixed)) = (time, fixed) {
         clock.moment = clock.moment_at(time.elapsed().saturating_sub(fixed.overstep()));
     }
-    let FrameClock {
+    let ClothFrameClock {
         looping,
         moment,
         step: number,
@@ -206,7 +212,7 @@ pub(crate) fn sample_motion(
         motion.now = now;
         if told || motion.teleported {
             motion.teleported = true;
-            messages.write(Teleported { entity, told });
+            messages.write(ClothMotionTeleported { entity, told });
         }
     }
 }

@@ -23,7 +23,7 @@ use crate::error::ClothErrorKind;
 ///
 /// A sleeping cloth stays as it is and costs nothing. It wakes when a pin, the grab, the material, the solver, its shape, its transform,
 /// its shading, its sleep settings, gravity, the substeps or the wind change, when a force is added, when a collider moves, appears or
-/// disappears where the cloth lies, and when the target of an attachment or of a motion constraint has moved by 0.1 mm. [`ClothRest::wake`]
+/// disappears where the cloth lies, and when the target of an attachment or of a motion constraint has moved by 0.1 mm. [`ClothSleepState::wake`]
 /// wakes it by hand.
 ///
 /// With [`unseen`](Self::unseen) it also sleeps while nobody sees it, whatever happens to it: see there.
@@ -127,10 +127,10 @@ impl Unseen {
 }
 
 /// State of rest and sleep of a cloth. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and [`rest_cloths`] alone, and by
-/// [`ClothRest::wake`].
+/// [`ClothSleepState::wake`].
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
-pub struct ClothRest {
+pub struct ClothSleepState {
     unseen: Unseen,
     seconds: f32,
     /// Step since which it sleeps.
@@ -153,7 +153,7 @@ struct Surroundings {
     colliders: u64,
 }
 
-impl ClothRest {
+impl ClothSleepState {
     /// Time for which the cloth has been at rest \[s\].
     pub fn seconds(&self) -> f32 {
         self.seconds

@@ -8,25 +8,25 @@ use std::{
 use bevy_ecs::prelude::*;
 use bevy_math::Quat;
 
-use super::{ClothRest, ClothSleep, Surroundings};
+use super::{ClothSleep, ClothSleepState, Surroundings};
 use crate::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
     collider::{ClothColliders, ClothLayers},
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
     material::ClothMaterial,
-    motion::MotionState,
+    motion::ClothMotionState,
     normals::ClothShading,
     pins::ClothPins,
     solver::{ClothSolver, ClothSubsteps},
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
     topology::ClothTopology,
-    wind::BlowingWind,
+    wind::ClothWindState,
 };
 
 /// After this time at rest a cloth begins to settle \[s\].
@@ -46,7 +46,7 @@ const ROOM: f32 = 0.02;
 
 fn around(
     step: &ClothStep,
-    wind: &BlowingWind,
+    wind: &ClothWindState,
     colliders: &ClothColliders,
     (frame, bounds): (&ClothFrame, &ClothBounds),
     (layers, substeps): (Option<&ClothLayers>, Option<&ClothSubsteps>),
@@ -91,12 +91,12 @@ fn fingerprint(values: &dyn fmt::Debug) -> u64 {
 /// Wakes the cloths to which something happened since they fell asleep.
 pub fn wake_cloths(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     colliders: Res<ClothColliders>,
     mut cloths: Query<
         (
             Entity,
-            &mut ClothRest,
+            &mut ClothSleepState,
             (
                 Ref<ClothSleep>,
                 Ref<ClothPins>,
@@ -108,8 +108,8 @@ pub fn wake_cloths(
             (
                 &ClothGrab,
                 &ClothForces,
-                &AttachedParticles,
-                Option<&MotionState>,
+                &ClothAttachedParticles,
+                Option<&ClothMotionState>,
             ),
             (&ClothFrame, &ClothBounds),
             (Option<&ClothLayers>, Option<&ClothSubsteps>),
@@ -124,7 +124,13 @@ pub fn wake_cloths(
         let (sleep, pins, material, solver, topology, shading) = settings;
         if sleep.is_changed() {
             let errors = sleep.errors();
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Sleep, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                &commands,
+                ClothErrorSource::Sleep,
+                errors,
+            );
         }
         if rest.is_unseen() {
             continue;
@@ -151,7 +157,7 @@ pub fn wake_cloths(
             || place.0.is_moving()
             || place.0.jump_turn().is_some_and(turned)
             || attached.is_disturbed()
-            || motion.is_some_and(MotionState::is_disturbed);
+            || motion.is_some_and(ClothMotionState::is_disturbed);
         let other = |known: Surroundings| {
             known != around(&step, &wind, &colliders, place, optional, &material)
         };
@@ -177,7 +183,7 @@ pub fn settle_cloths(
 /// Lets the cloths fall asleep that have been at rest for long enough.
 pub fn rest_cloths(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     colliders: Res<ClothColliders>,
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
@@ -201,7 +207,7 @@ impl ClothStagesItem<'_, '_> {
             .bodies
             .pushed(&colliders.list);
         let still = self.particles.0.is_at_rest(self.sleep.speed, seconds);
-        let led = self.attached.is_led() || self.motion.is_some_and(MotionState::is_led);
+        let led = self.attached.is_led() || self.motion.is_some_and(ClothMotionState::is_led);
         // What has begun to settle is left to it until something happens: knots tug at themselves all the time.
         if carries || led || !(still || self.rest.around.is_some()) {
             let awake = self.rest.awake();
@@ -216,7 +222,7 @@ impl ClothStagesItem<'_, '_> {
     pub(crate) fn rest(
         &mut self,
         step: &ClothStep,
-        wind: &BlowingWind,
+        wind: &ClothWindState,
         colliders: &ClothColliders,
     ) {
         if self.rest.seconds < CALM {

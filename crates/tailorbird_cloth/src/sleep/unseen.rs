@@ -4,9 +4,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use tailorbird_solver::particles::{Particles, State};
 
-use super::{ClothRest, ClothSeen, ClothSleep, Unseen};
+use super::{ClothSeen, ClothSleep, ClothSleepState, Unseen};
 use crate::{
-    attachment::AttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
+    attachment::ClothAttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
     motion::ClothMotionTargets, normals::ClothNormals, particles::ClothParticles, step::ClothStep,
 };
 
@@ -17,7 +17,7 @@ pub fn rest_unseen(
         (
             &ClothSleep,
             &ClothSeen,
-            &mut ClothRest,
+            &mut ClothSleepState,
             &mut ClothFrame,
             Has<ClothMotionTargets>,
         ),
@@ -36,10 +36,10 @@ pub fn rest_unseen(
             same => same,
         };
         if unseen != rest.unseen {
-            *rest = ClothRest {
+            *rest = ClothSleepState {
                 unseen,
                 settings: rest.settings,
-                ..ClothRest::default()
+                ..ClothSleepState::default()
             };
             frame.bypass_change_detection().carries = rest.is_unseen();
         }
@@ -51,9 +51,9 @@ pub fn carry_unseen(
     step: Res<ClothStep>,
     mut cloths: Query<
         (
-            &ClothRest,
+            &ClothSleepState,
             &ClothFrame,
-            &AttachedParticles,
+            &ClothAttachedParticles,
             &mut ClothParticles,
             &mut ClothNormals,
             &mut ClothBounds,

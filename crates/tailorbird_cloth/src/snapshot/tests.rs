@@ -75,23 +75,23 @@ fn turn(time: Res<Time>, mut movers: Query<(&Turns, &mut Transform)>) {
 #[derive(Resource, Clone)]
 struct Sinks(f32, Entity);
 
-fn sink(sinks: Option<ResMut<Sinks>>, mut colliders: ResMut<ExternalColliders>) {
+fn sink(sinks: Option<ResMut<Sinks>>, mut colliders: ResMut<ClothExternalColliders>) {
     let Some(mut sinks) = sinks else {
         return;
     };
     let at = |height| bevy_math::Isometry3d::from_translation(Vec3::new(0.05, height, -0.02));
     let (start, end) = (at(sinks.0), at(sinks.0 - 0.002));
     sinks.0 -= 0.002;
-    colliders.push(ExternalCollider {
+    colliders.push(ClothExternalCollider {
         entity: sinks.1,
         part: 0,
-        shape: ColliderShape::Sphere { radius: 0.3 },
+        shape: ClothColliderShape::Sphere { radius: 0.3 },
         friction: 0.5,
         margin: 0.0,
         layers: ClothLayers::ALL,
         start,
         end,
-        body: Some(ColliderBody {
+        body: Some(ClothColliderBody {
             body: sinks.1,
             inv_mass: Vec3::splat(0.5),
             inv_inertia: bevy_math::Mat3::from_diagonal(Vec3::splat(14.0)),
@@ -112,7 +112,9 @@ fn spoil(mut cloths: Query<&mut ClothParticles>) {
 fn bits(app: &mut App, steps: usize) -> Vec<(Vec<bool>, Vec<u32>)> {
     let mut step = || {
         app.update();
-        let mut cloths = app.world_mut().query::<(&ClothParticles, &ClothRest)>();
+        let mut cloths = app
+            .world_mut()
+            .query::<(&ClothParticles, &ClothSleepState)>();
         let cloths = cloths.iter(app.world());
         let points = cloths
             .clone()
@@ -133,7 +135,7 @@ struct Game {
     played: Played,
     sinks: Option<Sinks>,
     settings: ClothSettings,
-    wind: Wind,
+    wind: ClothWind,
 }
 
 impl Game {
@@ -153,7 +155,7 @@ impl Game {
             played: world.resource::<Played>().clone(),
             sinks: world.get_resource::<Sinks>().cloned(),
             settings: world.resource::<ClothSettings>().clone(),
-            wind: world.resource::<Wind>().clone(),
+            wind: world.resource::<ClothWind>().clone(),
         }
     }
 
@@ -203,15 +205,15 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
     }
     [
         ("wind", |world| {
-            world.insert_resource(Wind {
+            world.insert_resource(ClothWind {
                 velocity: Vec3::new(6.0, 0.0, 2.0),
-                turbulence: Turbulence {
+                turbulence: ClothTurbulence {
                     speed: 2.0,
-                    ..Turbulence::default()
+                    ..ClothTurbulence::default()
                 },
-                ..Wind::default()
+                ..ClothWind::default()
             });
-            world.spawn((square(), ClothPins::edges([GridEdge::Left])));
+            world.spawn((square(), ClothPins::edges([ClothEdge::Left])));
             world.spawn((square(), ClothSolver::GaussSeidel));
         }),
         ("falls on shapes", |world| {
@@ -234,7 +236,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
             world.spawn((square(), lying()));
         }),
         ("more than it has", |world| {
-            let pins = ClothPins::edges([GridEdge::Top]);
+            let pins = ClothPins::edges([ClothEdge::Top]);
             world.spawn((square(), pins, Transform::default()));
             world.spawn((
                 ClothCollider::sphere(0.3),
@@ -245,10 +247,10 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
             world.spawn((
                 square(),
                 ClothPins::edges([
-                    GridEdge::Top,
-                    GridEdge::Bottom,
-                    GridEdge::Left,
-                    GridEdge::Right,
+                    ClothEdge::Top,
+                    ClothEdge::Bottom,
+                    ClothEdge::Left,
+                    ClothEdge::Right,
                 ]),
             ));
             world.spawn((
@@ -258,7 +260,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
             ));
         }),
         ("a body", |world| {
-            let edges = [GridEdge::Left, GridEdge::Right];
+            let edges = [ClothEdge::Left, ClothEdge::Right];
             world.spawn((square(), lying(), ClothPins::edges(edges)));
             let body = world.spawn_empty().id();
             world.insert_resource(Sinks(1.35, body));
@@ -273,18 +275,18 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
             let at = Transform::from_xyz(0.0, 2.0, 0.0);
             let cloth = world.spawn((square(), at)).id();
             let [rigid, soft] =
-                [GridCorner::TopLeft, GridCorner::TopRight].map(PinSelection::Corner);
+                [ClothCorner::TopLeft, ClothCorner::TopRight].map(ClothSelection::Corner);
             for (selection, compliance) in [(rigid, 0.0), (soft, 0.01)] {
                 let attachment = ClothAttachment {
                     selections: vec![selection],
                     compliance,
                     ..ClothAttachment::default()
                 };
-                world.spawn((attachment, AttachmentOf(cloth), AttachedTo(pole)));
+                world.spawn((attachment, ClothAttachmentOf(cloth), ClothAttachedTo(pole)));
             }
         }),
         ("sleeps, and is woken", |world| {
-            let pins = ClothPins::edges([GridEdge::Top]);
+            let pins = ClothPins::edges([ClothEdge::Top]);
             world.spawn((
                 square(),
                 pins,
@@ -306,17 +308,17 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                 ..ClothSleep::default()
             };
             let cloth = world.spawn((square(), still, Transform::default())).id();
-            let top = PinSelection::Edge(GridEdge::Top);
+            let top = ClothSelection::Edge(ClothEdge::Top);
             let attachment = ClothAttachment {
                 selections: vec![top],
                 ..ClothAttachment::default()
             };
-            world.spawn((attachment, AttachmentOf(cloth), AttachedTo(pole)));
+            world.spawn((attachment, ClothAttachmentOf(cloth), ClothAttachedTo(pole)));
             let limited = (square(), still, ClothMotionConstraints::at_most(0.0));
             world.spawn((limited, Transform::from_xyz(5.0, 0.0, 0.0)));
         }),
         ("in a hand", |world| {
-            let pins = ClothPins::corners([GridCorner::TopLeft]);
+            let pins = ClothPins::corners([ClothCorner::TopLeft]);
             world.spawn((
                 square(),
                 pins,
@@ -337,7 +339,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
         ("pushed, reset, paused, written wrongly", |world| {
             world.spawn((
                 square(),
-                ClothPins::edges([GridEdge::Left]),
+                ClothPins::edges([ClothEdge::Left]),
                 Plays(|step, mut cloth| {
                     if step < 30
                         && let Some(mut forces) = cloth.get_mut::<ClothForces>()
@@ -367,7 +369,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                 .collect();
             let cells = (0..19u32).flat_map(|x| (0..9u32).map(move |y| 20 * y + x));
             let corners = cells.flat_map(|k| [k, k + 20, k + 1, k + 1, k + 20, k + 21]);
-            let near = PinSelection::Within {
+            let near = ClothSelection::Within {
                 center: Vec3::ZERO,
                 radius: 0.25,
             };
@@ -389,7 +391,7 @@ fn scenes() -> [(&'static str, fn(&mut World)); 13] {
                     cloth.insert(ClothSeen(!(80..130).contains(&step)));
                 }),
             ));
-            let zone = WindZone::cuboid(Vec3::splat(6.0), Vec3::new(1.0, 0.0, 4.0));
+            let zone = ClothWindZone::cuboid(Vec3::splat(6.0), Vec3::new(1.0, 0.0, 4.0));
             world.spawn((zone, Transform::from_xyz(1.0, 0.0, 0.0)));
         }),
     ]

@@ -10,7 +10,7 @@ use crate::{
     particles::ClothParticles,
     runner::OwnStages,
     settings::ClothSettings,
-    sleep::ClothRest,
+    sleep::ClothSleepState,
     solver::{ClothSolver, ClothSubsteps},
     topology::ClothTopology,
 };
@@ -31,7 +31,7 @@ pub fn begin_step(
     mut settings: ResMut<ClothSettings>,
     time: Res<Time>,
     (schedules, own): (Res<Schedules>, Res<OwnStages>),
-    cloths: Query<(&ClothRest, &ClothParticles), With<Cloth>>,
+    cloths: Query<(&ClothSleepState, &ClothParticles), With<Cloth>>,
 ) {
     if settings.is_changed() {
         let errors = settings.errors();
@@ -73,7 +73,9 @@ pub fn begin_step(
 
 /// Notes where the step starts, of all cloths that are awake, those that have just woken included; also while paused: then both ends of the
 /// interpolation agree.
-pub(crate) fn begin_cloths(mut cloths: Query<(&ClothRest, &mut ClothParticles), With<Cloth>>) {
+pub(crate) fn begin_cloths(
+    mut cloths: Query<(&ClothSleepState, &mut ClothParticles), With<Cloth>>,
+) {
     for (rest, mut cloth) in &mut cloths {
         if !rest.is_asleep() {
             cloth.0.begin_step();
@@ -91,7 +93,7 @@ pub fn plan_substeps(
             Option<&ClothSubsteps>,
             &ClothTopology,
             &ClothParticles,
-            &ClothRest,
+            &ClothSleepState,
         ),
         With<Cloth>,
     >,

@@ -17,22 +17,22 @@ use tailorbird_solver::{
 };
 use tracing::error;
 
-use super::{Turbulence, Wind, WindModel, WindZone, zone::is_whole_in};
+use super::{ClothTurbulence, ClothWind, ClothWindModel, ClothWindZone, zone::is_whole_in};
 use crate::{
     bounds::ClothBounds,
     cloth::Cloth,
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     frame::{ClothFrame, split},
-    sampling::SampledPoses,
+    sampling::ClothSampledPoses,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };
 
-/// The air in this step: the [`Wind`] and all [`WindZone`]s. Written by [`prepare_wind`] alone.
+/// The air in this step: the [`ClothWind`] and all [`ClothWindZone`]s. Written by [`prepare_wind`] alone.
 #[derive(Resource, Clone, Debug, Default)]
-pub struct BlowingWind {
+pub struct ClothWindState {
     /// The last valid one.
-    valid: Wind,
+    valid: ClothWind,
     /// First the wind, then the zones in the order of their entities.
     sources: Vec<Source>,
 }
@@ -48,7 +48,7 @@ struct Source {
     at: Isometry3d,
     /// Velocity in world axes [m/s].
     velocity: Vec3,
-    turbulence: Turbulence,
+    turbulence: ClothTurbulence,
     /// Waves of its turbulence, in its own axes; amplitudes are 0 without any.
     waves: [Wave; WAVES],
     /// Displacement of its eddies, in its own axes \[m\].
@@ -63,13 +63,13 @@ impl Source {
             falloff: 0.0,
             at: Isometry3d::IDENTITY,
             velocity: Vec3::ZERO,
-            turbulence: Turbulence::default(),
+            turbulence: ClothTurbulence::default(),
             waves: [Wave::default(); WAVES],
             drift: DVec3::ZERO,
         }
     }
 
-    fn swirl(&mut self, turbulence: Turbulence, mean: Vec3, step: &ClothStep) {
+    fn swirl(&mut self, turbulence: ClothTurbulence, mean: Vec3, step: &ClothStep) {
         self.turbulence = turbulence;
         if turbulence.is_some() {
             self.waves = turbulence.waves(step.elapsed(), self.drift);
@@ -108,7 +108,7 @@ impl Source {
             WindRegion::Sphere { radius } => Vec3::splat(-radius),
         };
         numbers(hasher, &size.to_array());
-        let Turbulence { speed, scale, seed } = self.turbulence;
+        let ClothTurbulence { speed, scale, seed } = self.turbulence;
         numbers(hasher, &[self.falloff, speed, scale]);
         seed.hash(hasher);
         if self.turbulence.is_some() {
@@ -123,10 +123,10 @@ impl Source {
 /// not blow.
 pub fn prepare_wind(
     step: Res<ClothStep>,
-    wind: Res<Wind>,
-    poses: SampledPoses,
-    mut blowing: ResMut<BlowingWind>,
-    mut zones: Query<(Entity, Ref<WindZone>, &mut ClothStatus)>,
+    wind: Res<ClothWind>,
+    poses: ClothSampledPoses,
+    mut blowing: ResMut<ClothWindState>,
+    mut zones: Query<(Entity, Ref<ClothWindZone>, &mut ClothStatus)>,
     commands: ParallelCommands,
 ) {
     if wind.is_changed() {
@@ -138,7 +138,7 @@ pub fn prepare_wind(
             blowing.valid.clone_from(&wind);
         }
     }
-    let BlowingWind { valid, sources } = &mut *blowing;
+    let ClothWindState { valid, sources } = &mut *blowing;
     if sources.is_empty() {
         sources.push(Source::new(None));
     }
@@ -148,7 +148,13 @@ pub fn prepare_wind(
     for (entity, zone, mut status) in &mut zones {
         if zone.is_changed() {
             let errors = zone.errors();
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Wind, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                &commands,
+                ClothErrorSource::ClothWind,
+                errors,
+            );
         }
         let Ok(place) = poses.get(entity).map(|pose| split(&pose.end)) else {
             continue;
@@ -158,11 +164,11 @@ pub fn prepare_wind(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Transform,
+            ClothErrorSource::Transform,
             error,
         );
         let Ok((at, scale)) = place else { continue };
-        if !status.is_ok_for(ErrorSource::Wind) {
+        if !status.is_ok_for(ClothErrorSource::ClothWind) {
             continue;
         }
         let known = sources[blows..]
@@ -189,7 +195,7 @@ pub fn prepare_wind(
 /// Adds the acceleration by the wind, once per step.
 pub fn apply_wind(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     for_each_awake(&step, &mut cloths, &|mut cloth| {
@@ -203,7 +209,7 @@ fn ball(frame: &ClothFrame, bounds: &ClothBounds) -> (Vec3, f32) {
     (frame.to_world(middle), bounds.max.distance(middle))
 }
 
-impl BlowingWind {
+impl ClothWindState {
     /// The velocity of the air at a place in the world, in world axes [m/s]: for whatever else the wind moves.
     pub fn velocity_at(&self, point: Vec3) -> Vec3 {
         self.sources
@@ -238,7 +244,7 @@ impl BlowingWind {
         if cloth.particles.is_empty() || !material.errors().is_empty() {
             return;
         }
-        if density == 0.0 && model == WindModel::Aerodynamic {
+        if density == 0.0 && model == ClothWindModel::Aerodynamic {
             return;
         }
         let ball = ball(frame, &cloth.bounds);
@@ -253,7 +259,7 @@ impl BlowingWind {
                 varies = true;
             }
         }
-        if model == WindModel::Classic {
+        if model == ClothWindModel::Classic {
             velocity = self.velocity_at(ball.0);
             varies = false;
             if velocity == Vec3::ZERO {
@@ -335,8 +341,8 @@ impl BlowingWind {
                 acceleration: SharedPoints::new(acceleration),
             };
             workers.share(0..lattice.rows as usize, |rows| match model {
-                WindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
-                WindModel::Aerodynamic => {
+                ClothWindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
+                ClothWindModel::Aerodynamic => {
                     aerodynamics::drag_and_lift_on_sheet(level, sheet, air, per_second, rows);
                 }
             });
@@ -344,10 +350,10 @@ impl BlowingWind {
         }
         let triangles = &topology.triangles;
         match model {
-            WindModel::Classic => {
+            ClothWindModel::Classic => {
                 aerodynamics::classic(triangles, wind, position, inv_mass, acceleration);
             }
-            WindModel::Aerodynamic => {
+            ClothWindModel::Aerodynamic => {
                 aerodynamics::drag_and_lift(
                     triangles,
                     &topology.triangle_areas,

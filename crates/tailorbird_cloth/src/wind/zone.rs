@@ -6,13 +6,13 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use tailorbird_solver::wind::WindRegion;
 
-use super::{Gusts, Turbulence, turbulence_errors};
+use super::{ClothGusts, ClothTurbulence, turbulence_errors};
 use crate::{
     error::{ClothErrorKind, ClothStatus},
-    sampling::SampledMotion,
+    sampling::ClothSampledMotion,
 };
 
-/// Air that moves in a part of the world, which is added to [`Wind`](super::Wind) and to other zones there. It moves, turns and grows with its
+/// Air that moves in a part of the world, which is added to [`ClothWind`](super::ClothWind) and to other zones there. It moves, turns and grows with its
 /// entity, and `velocity` and turbulence turn with it.
 ///
 /// ```
@@ -22,10 +22,10 @@ use crate::{
 /// # use tailorbird_cloth::prelude::*;
 /// fn fan(mut commands: Commands) {
 ///     commands.spawn((
-///         WindZone {
+///         ClothWindZone {
 ///             falloff: 0.5,
-///             turbulence: Turbulence { speed: 1.0, scale: 0.5, ..Turbulence::default() },
-///             ..WindZone::cuboid(Vec3::new(2.0, 2.0, 6.0), Vec3::Z * 6.0)
+///             turbulence: ClothTurbulence { speed: 1.0, scale: 0.5, ..ClothTurbulence::default() },
+///             ..ClothWindZone::cuboid(Vec3::new(2.0, 2.0, 6.0), Vec3::Z * 6.0)
 ///         },
 ///         Transform::from_xyz(0.0, 1.0, -3.0),
 ///     ));
@@ -38,38 +38,38 @@ use crate::{
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(Transform, ClothStatus, SampledMotion)]
-pub struct WindZone {
+#[require(Transform, ClothStatus, ClothSampledMotion)]
+pub struct ClothWindZone {
     /// Region in which it blows.
-    pub shape: WindShape,
+    pub shape: ClothWindShape,
     /// Mean velocity of the air, along the entity's axes [m/s].
     pub velocity: Vec3,
     /// Width inside the border over which the wind rises from nothing to its full speed \[m\]; 0 is at once. Nothing outside moves.
     pub falloff: f32,
     /// Variation in time.
-    pub gusts: Gusts,
+    pub gusts: ClothGusts,
     /// Turbulence.
-    pub turbulence: Turbulence,
+    pub turbulence: ClothTurbulence,
 }
 
-impl Default for WindZone {
+impl Default for ClothWindZone {
     /// No wind in a sphere of 1 m.
     fn default() -> Self {
         Self {
-            shape: WindShape::default(),
+            shape: ClothWindShape::default(),
             velocity: Vec3::ZERO,
             falloff: 0.0,
-            gusts: Gusts::default(),
-            turbulence: Turbulence::default(),
+            gusts: ClothGusts::default(),
+            turbulence: ClothTurbulence::default(),
         }
     }
 }
 
-impl WindZone {
-    /// A steady wind in a box with these sides \[m\] [m/s]. Wind in the whole world is [`Wind`](super::Wind).
+impl ClothWindZone {
+    /// A steady wind in a box with these sides \[m\] [m/s]. Wind in the whole world is [`ClothWind`](super::ClothWind).
     pub fn cuboid(size: Vec3, velocity: Vec3) -> Self {
         Self {
-            shape: WindShape::Cuboid { size },
+            shape: ClothWindShape::Cuboid { size },
             velocity,
             ..Self::default()
         }
@@ -78,7 +78,7 @@ impl WindZone {
     /// A steady wind in a sphere of this radius \[m\] [m/s].
     pub fn sphere(radius: f32, velocity: Vec3) -> Self {
         Self {
-            shape: WindShape::Sphere { radius },
+            shape: ClothWindShape::Sphere { radius },
             velocity,
             ..Self::default()
         }
@@ -91,33 +91,39 @@ impl WindZone {
         let size =
             |field, value| ClothErrorKind::number(field, value, positive, "above 0 and finite [m]");
         let shape = match self.shape {
-            WindShape::Cuboid { size: sides } => {
+            ClothWindShape::Cuboid { size: sides } => {
                 let least = sides.min_element();
                 let most = sides.max_element();
                 size(
-                    "WindZone.shape.size",
+                    "ClothWindZone.shape.size",
                     if most.is_finite() { least } else { most },
                 )
             }
-            WindShape::Sphere { radius } => size("WindZone.shape.radius", radius),
+            ClothWindShape::Sphere { radius } => size("ClothWindZone.shape.radius", radius),
         };
         let falloff = ClothErrorKind::number(
-            "WindZone.falloff",
+            "ClothWindZone.falloff",
             self.falloff,
             not_negative,
             "at least 0 and finite [m]",
         );
         shape
             .into_iter()
-            .chain(ClothErrorKind::vector("WindZone.velocity", self.velocity))
+            .chain(ClothErrorKind::vector(
+                "ClothWindZone.velocity",
+                self.velocity,
+            ))
             .chain(falloff)
             .chain(
                 self.gusts
-                    .errors(["WindZone.gusts.strength", "WindZone.gusts.period"]),
+                    .errors(["ClothWindZone.gusts.strength", "ClothWindZone.gusts.period"]),
             )
             .chain(turbulence_errors(
                 &self.turbulence,
-                ["WindZone.turbulence.speed", "WindZone.turbulence.scale"],
+                [
+                    "ClothWindZone.turbulence.speed",
+                    "ClothWindZone.turbulence.scale",
+                ],
             ))
             .collect()
     }
@@ -129,7 +135,7 @@ impl WindZone {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
-pub enum WindShape {
+pub enum ClothWindShape {
     /// In a box around the entity.
     Cuboid {
         /// Its sides \[m\].
@@ -142,14 +148,14 @@ pub enum WindShape {
     },
 }
 
-impl Default for WindShape {
+impl Default for ClothWindShape {
     /// A sphere of 1 m.
     fn default() -> Self {
         Self::Sphere { radius: 1.0 }
     }
 }
 
-impl WindShape {
+impl ClothWindShape {
     /// The same for the solver, as large as an entity of this scale makes it.
     pub(super) fn region(self, scale: Vec3) -> WindRegion {
         let scale = scale.abs();

@@ -23,7 +23,7 @@ fn elongation(rows: u32, substeps: u32, material: ClothMaterial) -> f64 {
         size: Vec2::new(across, LENGTH),
         resolution: UVec2::new(COLUMNS, rows),
         material,
-        pins: ClothPins::edges([GridEdge::Top]),
+        pins: ClothPins::edges([ClothEdge::Top]),
         gravity: Vec3::NEG_Y * G,
         substeps: Some(substeps),
         ..Scene::default()

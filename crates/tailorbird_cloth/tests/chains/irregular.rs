@@ -22,7 +22,7 @@ fn app(cloth: Cloth, pins: ClothPins) -> (App, Entity) {
     let step = fixed.timestep();
     app.insert_resource(fixed)
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
-        .insert_resource(Wind::vacuum());
+        .insert_resource(ClothWind::vacuum());
     let entity = app.world_mut().spawn((cloth, pins)).id();
     app.update();
     app.world_mut().run_schedule(bevy_app::FixedPostUpdate);
@@ -58,7 +58,7 @@ fn shuffled() -> Cloth {
 
 fn upper_corners() -> ClothPins {
     let within = |center| {
-        ClothPin::new(PinSelection::Within {
+        ClothPin::new(ClothSelection::Within {
             center,
             radius: 1e-3,
         })
@@ -89,7 +89,7 @@ fn push(app: &mut App, cloth: Entity, which: impl Fn(Vec3) -> bool) {
 #[test]
 fn a_shuffled_sheet_moves_as_the_grid_that_it_is() {
     let sheet = Cloth::grid(Vec2::ONE, UVec2::splat(SIDE as u32));
-    let (mut a, of_a) = app(sheet, ClothPins::corners(GridCorner::TOP));
+    let (mut a, of_a) = app(sheet, ClothPins::corners(ClothCorner::TOP));
     let (mut b, of_b) = app(shuffled(), upper_corners());
     assert!(topology(&b, of_b).lattice().is_some());
     assert!(topology(&b, of_b).grid().is_none());
@@ -174,7 +174,7 @@ fn an_irregular_sheet_hangs_without_stretching() {
     let (mut app, cloth) = app(irregular(), upper_corners());
     assert!(topology(&app, cloth).fabric().is_some());
     push(&mut app, cloth, |p| p.y < -0.9);
-    let mut worst = Stretch::default();
+    let mut worst = ClothStretch::default();
     for _ in 0..180 {
         run(&mut app, 1);
         let stretch = particles(&app, cloth).stretch(topology(&app, cloth));

@@ -22,9 +22,9 @@ pub struct Scene {
     pub material: ClothMaterial,
     pub pins: ClothPins,
     pub gravity: Vec3,
-    pub wind: Wind,
+    pub wind: ClothWind,
     pub substeps: Option<u32>,
-    pub instruction_set: InstructionSet,
+    pub instruction_set: ClothInstructionSet,
     pub hz: f64,
     /// Middle and radius.
     pub sphere: Option<(Vec3, f32)>,
@@ -45,9 +45,9 @@ impl Default for Scene {
             material: rigid(),
             pins: ClothPins::default(),
             gravity: Vec3::NEG_Z * G,
-            wind: Wind::vacuum(),
+            wind: ClothWind::vacuum(),
             substeps: None,
-            instruction_set: InstructionSet::Auto,
+            instruction_set: ClothInstructionSet::Auto,
             hz: 60.0,
             sphere: None,
             threads: None,
@@ -62,7 +62,7 @@ impl Scene {
     pub fn hang(resolution: UVec2) -> Self {
         Self {
             resolution,
-            pins: ClothPins::corners(GridCorner::TOP),
+            pins: ClothPins::corners(ClothCorner::TOP),
             ..Self::default()
         }
     }
@@ -208,7 +208,7 @@ impl Sheet {
         60.0 * (sum / particles.len() as f64).sqrt()
     }
 
-    pub fn stretch(&self) -> Stretch {
+    pub fn stretch(&self) -> ClothStretch {
         self.particles().stretch(self.get::<ClothTopology>())
     }
 

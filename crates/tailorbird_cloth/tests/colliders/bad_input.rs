@@ -67,10 +67,10 @@ fn wrong_data_makes_no_shape() {
     is(ClothCollider::compound([]), "EmptyCompound");
     let away = Isometry3d::from_translation(Vec3::NAN);
     is(
-        ClothCollider::compound([(away, ColliderShape::HalfSpace)]),
+        ClothCollider::compound([(away, ClothColliderShape::HalfSpace)]),
         "Vector",
     );
-    assert!(Compound::new([(Isometry3d::IDENTITY, ColliderShape::HalfSpace)]).is_ok());
+    assert!(Compound::new([(Isometry3d::IDENTITY, ClothColliderShape::HalfSpace)]).is_ok());
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
         ..Scene::default()
     });
     let entity = sheet.app.world_mut().spawn_empty().id();
-    let right = ColliderBody {
+    let right = ClothColliderBody {
         body: entity,
         inv_mass: Vec3::ONE,
         inv_inertia: Mat3::IDENTITY,
@@ -88,14 +88,17 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
         linear_velocity: Vec3::ZERO,
         angular_velocity: Vec3::ZERO,
     };
-    let push = |sheet: &mut Sheet, body: ColliderBody, at: Vec3| {
+    let push = |sheet: &mut Sheet, body: ClothColliderBody, at: Vec3| {
         for _ in 0..2 {
             let at = Isometry3d::from_translation(at);
-            let mut external = sheet.app.world_mut().resource_mut::<ExternalColliders>();
-            external.push(ExternalCollider {
+            let mut external = sheet
+                .app
+                .world_mut()
+                .resource_mut::<ClothExternalColliders>();
+            external.push(ClothExternalCollider {
                 entity,
                 part: 0,
-                shape: ColliderShape::Sphere { radius: 0.3 },
+                shape: ClothColliderShape::Sphere { radius: 0.3 },
                 friction: 0.5,
                 margin: 0.0,
                 layers: ClothLayers::ALL,
@@ -106,7 +109,7 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
             sheet.steps(1);
         }
         let world = sheet.app.world();
-        assert!(world.resource::<ExternalColliders>().is_empty());
+        assert!(world.resource::<ClothExternalColliders>().is_empty());
         let particles = world
             .get::<ClothParticles>(sheet.entity)
             .expect("particles");
@@ -116,12 +119,12 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
             s.errors().map(ToString::to_string).collect()
         })
     };
-    let nan = ColliderBody {
+    let nan = ClothColliderBody {
         inv_mass: Vec3::new(1.0, f32::NAN, 1.0),
         ..right
     };
     assert!(push(&mut sheet, nan, Vec3::ZERO).contains("inv_mass is [1, NaN, 1]"));
-    let wrong = ColliderBody {
+    let wrong = ClothColliderBody {
         inv_inertia: Mat3::IDENTITY * -1.0,
         ..right
     };

@@ -11,7 +11,7 @@ use crate::scene::{Scene, Sheet};
 #[derive(Clone)]
 pub struct Body {
     entity: Entity,
-    shape: ColliderShape,
+    shape: ClothColliderShape,
     mass: f32,
     /// About every axis [kg m²].
     inertia: f32,
@@ -26,7 +26,7 @@ impl Body {
     pub fn ball(sheet: &mut Sheet, mass: f32, radius: f32, at: Vec3, velocity: Vec3) -> Self {
         Self {
             entity: sheet.app.world_mut().spawn_empty().id(),
-            shape: ColliderShape::Sphere { radius },
+            shape: ClothColliderShape::Sphere { radius },
             mass,
             inertia: 0.4 * mass * radius * radius,
             at: Isometry3d::from_translation(at),
@@ -44,8 +44,8 @@ impl Body {
         sheet
             .app
             .world_mut()
-            .resource_mut::<ExternalColliders>()
-            .push(ExternalCollider {
+            .resource_mut::<ClothExternalColliders>()
+            .push(ClothExternalCollider {
                 entity: self.entity,
                 part: 0,
                 shape: self.shape.clone(),
@@ -54,7 +54,7 @@ impl Body {
                 layers: ClothLayers::ALL,
                 start,
                 end,
-                body: Some(ColliderBody {
+                body: Some(ClothColliderBody {
                     body: self.entity,
                     inv_mass: Vec3::splat(1.0 / self.mass),
                     inv_inertia: Mat3::from_diagonal(Vec3::splat(1.0 / self.inertia)),
@@ -172,10 +172,10 @@ fn trampoline(gravity: Vec3) -> Sheet {
     Sheet::new(&Scene {
         resolution: UVec2::splat(33),
         pins: ClothPins::edges([
-            GridEdge::Top,
-            GridEdge::Bottom,
-            GridEdge::Left,
-            GridEdge::Right,
+            ClothEdge::Top,
+            ClothEdge::Bottom,
+            ClothEdge::Left,
+            ClothEdge::Right,
         ]),
         gravity,
         ..Scene::default()

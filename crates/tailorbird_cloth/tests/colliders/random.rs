@@ -210,7 +210,7 @@ fn convex() -> impl Strategy<Value = Convex> {
                     .map(|p| squeeze * Vec3::from(p))
                     .collect();
                 let hull = ClothCollider::convex_hull(&points).ok()?;
-                let ColliderShape::ConvexHull(hull) = &hull.shape else {
+                let ClothColliderShape::ConvexHull(hull) = &hull.shape else {
                     return None;
                 };
                 (hull.volume() > 1e-5).then(|| Convex::Hull(points.clone(), faces(&points)))

@@ -9,7 +9,7 @@ use crate::{
     shapes,
 };
 
-fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
+fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]> {
     let mut sheet = Sheet::new(&Scene {
         resolution: UVec2::splat(40),
         substeps: Some(8),
@@ -36,11 +36,11 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
         sheet
             .app
             .world_mut()
-            .resource_mut::<ExternalColliders>()
-            .push(ExternalCollider {
+            .resource_mut::<ClothExternalColliders>()
+            .push(ClothExternalCollider {
                 entity,
                 part: 0,
-                shape: ColliderShape::Capsule {
+                shape: ClothColliderShape::Capsule {
                     radius: 0.1,
                     half_length: 0.2,
                 },
@@ -49,7 +49,7 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
                 layers: ClothLayers::ALL,
                 start: at,
                 end: at,
-                body: Some(ColliderBody {
+                body: Some(ClothColliderBody {
                     body: entity,
                     inv_mass: Vec3::splat(10.0),
                     inv_inertia: Mat3::IDENTITY * 1000.0,
@@ -79,10 +79,13 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
 
 #[test]
 fn both_runners_and_all_instruction_sets_give_the_same_bits() {
-    let whole = bits(false, InstructionSet::Auto);
-    assert!(whole == bits(true, InstructionSet::Auto), "stage by stage");
+    let whole = bits(false, ClothInstructionSet::Auto);
     assert!(
-        whole == bits(false, InstructionSet::Scalar),
+        whole == bits(true, ClothInstructionSet::Auto),
+        "stage by stage"
+    );
+    assert!(
+        whole == bits(false, ClothInstructionSet::Scalar),
         "without vectors"
     );
 }
@@ -94,7 +97,7 @@ fn what_carries_a_body_stays_awake_either_way() {
         let mut sheet = Sheet::new(&Scene {
             resolution: UVec2::splat(17),
             substeps: Some(12),
-            pins: ClothPins::edges([GridEdge::Left, GridEdge::Right]),
+            pins: ClothPins::edges([ClothEdge::Left, ClothEdge::Right]),
             sleep: ClothSleep::default(),
             ..Scene::default()
         });
@@ -105,7 +108,7 @@ fn what_carries_a_body_stays_awake_either_way() {
         let mut pushes = Vec::new();
         for _ in 0..300 {
             let at = Isometry3d::from_translation(Vec3::new(0.0, 0.0, 0.05));
-            let body = ColliderBody {
+            let body = ClothColliderBody {
                 body: entity,
                 inv_mass: Vec3::splat(2.0),
                 inv_inertia: Mat3::IDENTITY * 20.0,
@@ -113,11 +116,14 @@ fn what_carries_a_body_stays_awake_either_way() {
                 linear_velocity: Vec3::ZERO,
                 angular_velocity: Vec3::ZERO,
             };
-            let mut colliders = sheet.app.world_mut().resource_mut::<ExternalColliders>();
-            colliders.push(ExternalCollider {
+            let mut colliders = sheet
+                .app
+                .world_mut()
+                .resource_mut::<ClothExternalColliders>();
+            colliders.push(ClothExternalCollider {
                 entity,
                 part: 0,
-                shape: ColliderShape::Sphere { radius: 0.2 },
+                shape: ClothColliderShape::Sphere { radius: 0.2 },
                 friction: 0.5,
                 margin: 0.0,
                 layers: ClothLayers::ALL,
@@ -130,8 +136,8 @@ fn what_carries_a_body_stays_awake_either_way() {
             let impulse = reactions.get(entity).map(|reaction| reaction.impulse);
             pushes.push(impulse.map(|impulse| impulse.to_array().map(f32::to_bits)));
         }
-        let rest = sheet.app.world().get::<ClothRest>(sheet.entity);
-        (pushes, rest.is_some_and(ClothRest::is_asleep))
+        let rest = sheet.app.world().get::<ClothSleepState>(sheet.entity);
+        (pushes, rest.is_some_and(ClothSleepState::is_asleep))
     };
     let (whole, asleep) = run(false);
     assert!(!asleep && whole.last().is_some_and(Option::is_some));
@@ -149,10 +155,10 @@ fn what_wakes_a_cloth_is_met_at_once_either_way() {
             resolution: UVec2::splat(17),
             substeps: Some(8),
             pins: ClothPins::edges([
-                GridEdge::Left,
-                GridEdge::Right,
-                GridEdge::Top,
-                GridEdge::Bottom,
+                ClothEdge::Left,
+                ClothEdge::Right,
+                ClothEdge::Top,
+                ClothEdge::Bottom,
             ]),
             sleep: ClothSleep::default(),
             gravity: Vec3::ZERO,
@@ -171,8 +177,8 @@ fn what_wakes_a_cloth_is_met_at_once_either_way() {
         }
         sheet.steps(240);
         let asleep = |sheet: &Sheet| {
-            let rest = sheet.app.world().get::<ClothRest>(sheet.entity);
-            rest.is_some_and(ClothRest::is_asleep)
+            let rest = sheet.app.world().get::<ClothSleepState>(sheet.entity);
+            rest.is_some_and(ClothSleepState::is_asleep)
         };
         assert!(asleep(&sheet));
         let at = Transform::from_xyz(0.1, 0.05, -0.15);

@@ -13,7 +13,7 @@ fn hung() -> (World, Entity, Entity, Entity) {
     let mut world = World::new();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
-    let attachment = world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
+    let attachment = world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(3);
     assert!(world.errors(attachment).is_empty());
     (world, cloth, hand, attachment)
@@ -29,10 +29,10 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         ("break_force", |held| held.break_force = Some(0.0)),
         ("break_force", |held| held.break_force = Some(f32::INFINITY)),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::NAN]);
+            held.offset = ClothAttachmentOffset::Points(vec![Vec3::NAN]);
         }),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::ZERO; 3]);
+            held.offset = ClothAttachmentOffset::Points(vec![Vec3::ZERO; 3]);
         }),
     ];
     for (name, change) in wrong {
@@ -46,7 +46,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         );
         assert!(world.at(cloth, 0).distance(CORNER) < 1e-6, "{name}");
         world.edit::<ClothAttachment>(attachment, |held| {
-            *held = ClothAttachment::corner(GridCorner::TopLeft);
+            *held = ClothAttachment::corner(ClothCorner::TopLeft);
         });
         world.steps(1);
         assert!(world.errors(attachment).is_empty(), "{name}");
@@ -57,7 +57,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
 fn a_selection_that_is_wrong_is_left_out() {
     let (mut world, cloth, _, attachment) = hung();
     world.edit::<ClothAttachment>(attachment, |held| {
-        held.selections.push(PinSelection::Particle(25));
+        held.selections.push(ClothSelection::Particle(25));
     });
     world.steps(60);
     let errors = world.errors(attachment);
@@ -99,7 +99,7 @@ fn another_target_that_is_nowhere_changes_nothing_until_it_is_somewhere() {
         .app
         .world_mut()
         .entity_mut(attachment)
-        .insert(AttachedTo(nowhere));
+        .insert(ClothAttachedTo(nowhere));
     world.steps(3);
     assert!(world.errors(attachment)[0].contains("GlobalTransform"));
     assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
@@ -128,19 +128,19 @@ fn an_attachment_without_its_relationships_says_so() {
     let mut world = World::new();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
-    let held = || ClothAttachment::corner(GridCorner::TopLeft);
+    let held = || ClothAttachment::corner(ClothCorner::TopLeft);
     let loose = world.spawn(held().to(hand));
-    let aimless = world.spawn((held(), AttachmentOf(cloth)));
+    let aimless = world.spawn((held(), ClothAttachmentOf(cloth)));
     world.steps(2);
-    assert!(world.errors(loose)[0].contains("AttachmentOf"));
-    assert!(world.errors(aimless)[0].contains("AttachedTo"));
+    assert!(world.errors(loose)[0].contains("ClothAttachmentOf"));
+    assert!(world.errors(aimless)[0].contains("ClothAttachedTo"));
     assert!(world.exists(aimless));
     // It is never too late.
     world
         .app
         .world_mut()
         .entity_mut(loose)
-        .insert(AttachmentOf(cloth));
+        .insert(ClothAttachmentOf(cloth));
     world.steps(1);
     assert!(world.errors(loose).is_empty());
     let at = world.at(cloth, 0);
@@ -151,7 +151,9 @@ fn an_attachment_without_its_relationships_says_so() {
 #[test]
 fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
     let wrong: [(&str, fn(&mut ClothMotionConstraints)); 5] = [
-        ("max_distance", |c| c.max_distance = PerParticle::All(-1.0)),
+        ("max_distance", |c| {
+            c.max_distance = ClothPerParticle::All(-1.0)
+        }),
         ("max_distance[3]", |c| {
             let mut values = vec![0.1; 25];
             values[3] = f32::NAN;

@@ -15,7 +15,7 @@ fn rest(cloth: Entity, world: &World) -> Vec<Vec3> {
 fn no_particle_gets_further_than_it_may() {
     let mut world = World::new();
     let weights = (0..81).map(|i| (i / 9) as f32 / 8.0);
-    let limits = PerParticle::weighted(weights.clone(), 0.3);
+    let limits = ClothPerParticle::weighted(weights.clone(), 0.3);
     let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(limits)));
     let rest = rest(cloth, &world);
     for _ in 0..200 {
@@ -48,7 +48,7 @@ fn held_rows_are_as_good_as_pins() {
                 .insert(ClothMotionConstraints::at_most(limits));
         } else {
             world.edit(cloth, |pins: &mut ClothPins| {
-                *pins = ClothPins::edges([GridEdge::Top]);
+                *pins = ClothPins::edges([ClothEdge::Top]);
             });
         }
         world.steps(60);
@@ -111,7 +111,7 @@ fn animate(mut clock: ResMut<Clock>, mut cloths: Query<(&Cloth, &mut ClothMotion
 
 #[test]
 fn targets_in_either_space_are_followed_without_lag() {
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         let mut world = World::new();
         world.app.init_resource::<Clock>();
         world.app.add_systems(bevy_app::FixedUpdate, animate);
@@ -135,8 +135,8 @@ fn targets_in_either_space_are_followed_without_lag() {
             let at = swing(clock);
             for (i, rest) in rest.iter().enumerate() {
                 let p = match space {
-                    TargetSpace::Frame => world.particles(cloth).position(i),
-                    TargetSpace::World => world.at(cloth, i),
+                    ClothTargetSpace::Frame => world.particles(cloth).position(i),
+                    ClothTargetSpace::World => world.at(cloth, i),
                 };
                 let away = p.distance(at.transform_point(*rest));
                 let most = if i < 9 { 0.0 } else { most };

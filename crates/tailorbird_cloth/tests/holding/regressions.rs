@@ -40,7 +40,7 @@ fn no_velocity_spike_in_the_first_substep_of_an_attachment() {
     let mut world = noting(World::new().without_gravity());
     let hand = world.spawn((steady(0.0), Path(Box::new(steady))));
     let cloth = world.spawn(square(9));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     // The rest is taken along; undamped it swings on for a while.
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 4.0);
     world.steps(200);
@@ -110,7 +110,7 @@ fn no_velocity_grows_on_a_resting_contact() {
             square(12),
             lying,
             constraints,
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
         ));
         let mut fastest = Vec::new();
         for _ in 0..6 {

@@ -29,11 +29,11 @@ fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (World, En
 }
 
 fn is_asleep(world: &World, cloth: Entity) -> bool {
-    world.get::<ClothRest>(cloth).is_asleep()
+    world.get::<ClothSleepState>(cloth).is_asleep()
 }
 
 fn holds() -> [ClothAttachment; 3] {
-    let edge = ClothAttachment::edge(GridEdge::Top);
+    let edge = ClothAttachment::edge(ClothEdge::Top);
     [
         edge.clone(),
         edge.clone().with_compliance(0.01),
@@ -101,7 +101,7 @@ fn it_wakes_when_the_attachment_goes_or_another_comes() {
 
 #[test]
 fn targets_that_are_set_to_where_they_are_wake_nobody_and_others_do() {
-    let held = ClothAttachment::edge(GridEdge::Top);
+    let held = ClothAttachment::edge(ClothEdge::Top);
     let (mut world, cloth, _) = sleeping(held, Some(0.1));
     let rest = world.get::<Cloth>(cloth).rest_positions();
     let aim = |world: &mut World, by: f32| {

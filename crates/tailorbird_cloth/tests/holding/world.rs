@@ -55,7 +55,7 @@ impl World {
             task_pool_options: pools,
         };
         app.add_plugins((pools, TimePlugin, ClothPlugin::default()))
-            .insert_resource(Wind::vacuum())
+            .insert_resource(ClothWind::vacuum())
             .init_resource::<Steps>()
             .add_systems(FixedUpdate, follow)
             .insert_resource(Time::<Fixed>::from_hz(HZ));
@@ -82,7 +82,7 @@ impl World {
     }
 
     pub fn attach(&mut self, cloth: Entity, to: Entity, attachment: ClothAttachment) -> Entity {
-        self.spawn((attachment.to(to), AttachmentOf(cloth)))
+        self.spawn((attachment.to(to), ClothAttachmentOf(cloth)))
     }
 
     pub fn despawn(&mut self, entity: Entity) {
@@ -149,7 +149,7 @@ impl World {
             .fold(0.0, f32::max)
     }
 
-    pub fn stretch(&self, cloth: Entity) -> Stretch {
+    pub fn stretch(&self, cloth: Entity) -> ClothStretch {
         let topology: &ClothTopology = self.get(cloth);
         self.particles(cloth).stretch(topology)
     }

@@ -11,18 +11,18 @@ use crate::game::{Game, HELD, Held, Mover, When, cape, spawn_cape};
 const RATES: [f64; 4] = [30.0, 60.0, 64.0, 144.0];
 
 #[derive(Resource, Default)]
-struct Told(Vec<Teleported>);
+struct Told(Vec<ClothMotionTeleported>);
 
 fn listen(game: &mut Game) {
     game.app.init_resource::<Told>().add_systems(
         Update,
-        |mut messages: MessageReader<Teleported>, mut told: ResMut<Told>| {
+        |mut messages: MessageReader<ClothMotionTeleported>, mut told: ResMut<Told>| {
             told.0.extend(messages.read().copied());
         },
     );
 }
 
-fn told(game: &Game) -> &[Teleported] {
+fn told(game: &Game) -> &[ClothMotionTeleported] {
     &game.app.world().resource::<Told>().0
 }
 
@@ -63,7 +63,7 @@ fn a_hop_of_two_metres_stretches_nothing_and_is_told() {
                 let name = format!("{fps} {held:?} {when:?}");
                 let (is, should) = (hops.stretch(), runs.stretch());
                 assert!(is < 0.05, "{name}: {is}, {should} without");
-                let expected = Teleported {
+                let expected = ClothMotionTeleported {
                     entity: body,
                     told: false,
                 };
@@ -109,7 +109,7 @@ fn what_several_hold_goes_along_with_all_of_them() {
             let mut game = Game::new(fps, 60.0);
             let cloth = game.spawn(cape());
             let body = game.spawn(Transform::default());
-            let hands = [GridCorner::TopLeft, GridCorner::TopRight].map(|corner| {
+            let hands = [ClothCorner::TopLeft, ClothCorner::TopRight].map(|corner| {
                 let hand = game.spawn(Transform::default());
                 game.attach(cloth, hand, ClothAttachment::corner(corner));
                 hand
@@ -154,7 +154,7 @@ fn a_short_hop_of_a_holder_is_told() {
             game.seconds(2.0);
             let before = game.at(cloth, 300);
             game.shift(body, Vec3::X * 0.25);
-            game.edit::<SampledMotion>(body, SampledMotion::teleport);
+            game.edit::<ClothSampledMotion>(body, ClothSampledMotion::teleport);
             let mut speed = 0.0f32;
             for _ in 0..20 {
                 game.frames(1);
@@ -163,7 +163,7 @@ fn a_short_hop_of_a_holder_is_told() {
             assert!(speed < 0.5, "{fps} {held:?}: {speed}");
             let moved = game.at(cloth, 300) - before;
             assert!(moved.distance(Vec3::X * 0.25) < 0.02, "{moved}");
-            let expected = Teleported {
+            let expected = ClothMotionTeleported {
                 entity: body,
                 told: true,
             };
@@ -226,7 +226,7 @@ fn nobody_feels_that_the_origin_is_shifted() {
 fn a_collider_that_hops_sweeps_nothing_along() {
     for fps in RATES {
         let mut game = Game::new(fps, 60.0);
-        let cloth = game.spawn((cape(), ClothPins::edges([GridEdge::Top])));
+        let cloth = game.spawn((cape(), ClothPins::edges([ClothEdge::Top])));
         let ball = Transform::from_xyz(0.0, -0.6, -1.0);
         let ball = game.spawn((ClothCollider::sphere(0.2), ball));
         game.seconds(2.0);
@@ -274,7 +274,7 @@ fn a_scaled_parent_does_not_make_hops_of_motion() {
         Mover(When::PostUpdate, swing),
     ));
     let cloth = game.spawn(cape());
-    game.attach(cloth, bone, ClothAttachment::edge(GridEdge::Top));
+    game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
     game.seconds(3.0);
     assert_eq!(told(&game), []);
 }

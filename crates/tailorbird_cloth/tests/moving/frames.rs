@@ -28,7 +28,7 @@ fn swing(t: f32) -> Transform {
 /// same motion, a step later, differs by 10 %.
 fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Game)) -> Film {
     let mut game = Game::new(fps, hz);
-    game.app.insert_resource(Wind::default());
+    game.app.insert_resource(ClothWind::default());
     prepare(&mut game);
     game.seconds(3.0);
     game.film();
@@ -80,7 +80,7 @@ fn a_bone_that_is_animated_on_what_the_fixed_loop_moves() {
             let cloth = game.spawn(cape());
             let body = game.spawn((Transform::default(), Mover(When::FixedUpdate, run)));
             let bone = game.spawn((Transform::default(), Mover(when, swing), ChildOf(body)));
-            game.attach(cloth, bone, ClothAttachment::edge(GridEdge::Top));
+            game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
         })
     };
     let fixed = bones(60.0, When::FixedUpdate);
@@ -93,12 +93,12 @@ fn a_bone_that_is_animated_on_what_the_fixed_loop_moves() {
 
 #[test]
 fn targets_that_are_set_once_a_frame() {
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         let aimed = |fps, when| {
             filmed(fps, 60.0, |game| {
                 game.spawn((
                     cape(),
-                    ClothMotionConstraints::at_most(PerParticle::Each(
+                    ClothMotionConstraints::at_most(ClothPerParticle::Each(
                         (0..SIZE.element_product())
                             .map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY })
                             .collect(),
@@ -127,7 +127,7 @@ fn a_collider_that_is_moved_once_a_frame() {
         filmed(fps, 60.0, |game| {
             game.spawn((
                 Cloth::grid(Vec2::new(0.8, 1.2), SIZE).with_origin(Vec2::new(0.5, 0.0)),
-                ClothPins::edges([GridEdge::Top]),
+                ClothPins::edges([ClothEdge::Top]),
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
@@ -229,14 +229,14 @@ proptest! {
         let size = UVec2::new(4, 8);
         let run = |when: When, lengths: &[f64]| {
             let mut game = Game::new(60.0, hz);
-            game.app.insert_resource(Wind::default());
+            game.app.insert_resource(ClothWind::default());
             let cloth = game.spawn((
                 Cloth::grid(Vec2::new(0.3, 0.8), size),
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
             let body = game.spawn((Transform::default(), Mover(when, swing)));
-            game.attach(cloth, body, ClothAttachment::edge(GridEdge::Top));
+            game.attach(cloth, body, ClothAttachment::edge(ClothEdge::Top));
             for (k, length) in lengths.iter().cycle().take(400).enumerate() {
                 if k == 200 {
                     game.film();

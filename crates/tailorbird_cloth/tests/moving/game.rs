@@ -53,7 +53,7 @@ fn aim(when: When) -> impl Fn(Res<Time>, Query<(&TargetMover, &Cloth, &mut Cloth
 #[derive(Resource, Default)]
 pub struct Film {
     pub steps: Vec<Vec<Vec3>>,
-    pub stretch: Vec<Stretch>,
+    pub stretch: Vec<ClothStretch>,
 }
 
 fn film(
@@ -93,7 +93,7 @@ impl Game {
             task_pool_options: pools,
         };
         app.add_plugins((pools, TimePlugin, ClothPlugin::new(schedule.clone())))
-            .insert_resource(Wind::vacuum())
+            .insert_resource(ClothWind::vacuum())
             .init_resource::<Film>()
             .insert_resource(Time::<Fixed>::from_hz(hz))
             .add_systems(FixedUpdate, (go(When::FixedUpdate), aim(When::FixedUpdate)))
@@ -173,7 +173,7 @@ impl Game {
     }
 
     pub fn attach(&mut self, cloth: Entity, to: Entity, clip: ClothAttachment) {
-        self.spawn((clip.to(to), AttachmentOf(cloth)));
+        self.spawn((clip.to(to), ClothAttachmentOf(cloth)));
     }
 }
 
@@ -242,8 +242,8 @@ pub const HELD: [Held; 4] = [Held::Pinned, Held::Child, Held::Attached, Held::Sp
 /// A cape, and the entity that moves.
 pub fn spawn_cape(game: &mut Game, held: Held) -> (Entity, Entity) {
     let cloth = game.spawn(cape());
-    let top = || ClothAttachment::edge(GridEdge::Top);
-    let pins = ClothPins::edges([GridEdge::Top]);
+    let top = || ClothAttachment::edge(ClothEdge::Top);
+    let pins = ClothPins::edges([ClothEdge::Top]);
     match held {
         Held::Pinned => {
             game.app.world_mut().entity_mut(cloth).insert(pins);

@@ -45,7 +45,7 @@ pub struct Seen {
     /// Of [`ClothStatus::strained`] [-].
     pub strained: f32,
     /// In the calm alone.
-    pub stretch: Stretch,
+    pub stretch: ClothStretch,
     /// In the world \[m\]; in the calm alone.
     pub places: Vec<Vec3>,
 }
@@ -171,7 +171,7 @@ pub fn film(
         stretch: if calm {
             particles.stretch(topology)
         } else {
-            Stretch::default()
+            ClothStretch::default()
         },
         places: if calm { places } else { Vec::new() },
     });

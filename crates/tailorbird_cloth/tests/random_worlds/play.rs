@@ -185,7 +185,7 @@ impl Play {
                         clip
                     };
                     let holder = world.spawn(Transform::IDENTITY).id();
-                    world.spawn((clip.to(holder), AttachmentOf(entity)));
+                    world.spawn((clip.to(holder), ClothAttachmentOf(entity)));
                     holder
                 }
             };
@@ -214,7 +214,7 @@ impl Play {
         for (hold, particles, holder) in &self.holds {
             for &i in particles {
                 match hold.by {
-                    By::Pin => pins.pins.push(ClothPin::new(PinSelection::Particle(i))),
+                    By::Pin => pins.pins.push(ClothPin::new(ClothSelection::Particle(i))),
                     By::Target => {
                         let at = scale * self.rest[i as usize] + self.holders[*holder].way[0];
                         pins.pins.push(ClothPin::at(i, at));
@@ -233,11 +233,11 @@ impl Play {
         let holders = self.holders.len();
         let bodies = self.bodies.len().max(1);
         match event {
-            Event::Wind {
+            Event::ClothWind {
                 velocity,
                 turbulence,
             } => {
-                let mut wind = world.resource_mut::<Wind>();
+                let mut wind = world.resource_mut::<ClothWind>();
                 wind.velocity = velocity.into();
                 wind.turbulence.speed = turbulence;
             }
@@ -287,7 +287,7 @@ impl Play {
             Event::Teleport { holder, by } => {
                 let holder = &mut self.holders[holder % holders];
                 holder.go(by.into(), f32::INFINITY);
-                if let Some(mut motion) = world.get_mut::<SampledMotion>(holder.entity) {
+                if let Some(mut motion) = world.get_mut::<ClothSampledMotion>(holder.entity) {
                     motion.teleport();
                 }
             }
@@ -351,7 +351,7 @@ impl Play {
         for (body, _) in &mut self.bodies {
             body.stop();
         }
-        let mut wind = world.resource_mut::<Wind>();
+        let mut wind = world.resource_mut::<ClothWind>();
         wind.velocity = Vec3::ZERO;
         wind.turbulence.speed = 0.0;
         let bodies = self.bodies.iter().map(|(body, shape)| Body {

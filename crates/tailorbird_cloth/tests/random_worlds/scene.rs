@@ -26,9 +26,9 @@ pub fn happen(description: &Description) -> Film {
     let clock = &description.clock;
     app.add_plugins((pools, TimePlugin, ClothPlugin::default()))
         .insert_resource(if description.air {
-            Wind::default()
+            ClothWind::default()
         } else {
-            Wind::vacuum()
+            ClothWind::vacuum()
         })
         .insert_resource(Time::<Fixed>::from_hz(clock.hz))
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(

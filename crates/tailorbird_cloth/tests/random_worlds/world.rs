@@ -90,7 +90,7 @@ pub enum Shape {
 #[derive(Clone, Debug)]
 pub enum Event {
     /// Still air is a velocity of 0 [m/s].
-    Wind {
+    ClothWind {
         velocity: V,
         turbulence: f32,
     },
@@ -126,7 +126,7 @@ pub enum Event {
         by: V,
         speed: f32,
     },
-    /// Elsewhere at once, told by `SampledMotion::teleport`.
+    /// Elsewhere at once, told by `ClothSampledMotion::teleport`.
     Teleport {
         holder: usize,
         by: V,
@@ -229,7 +229,7 @@ fn event() -> impl Strategy<Value = Event> {
     let velocity = prop_oneof![Just([0.0; 3]), vector(2.0), vector(25.0)];
     prop_oneof![
         2 => (wind, 0f32..15.0)
-            .prop_map(|(velocity, turbulence)| Event::Wind { velocity, turbulence }),
+            .prop_map(|(velocity, turbulence)| Event::ClothWind { velocity, turbulence }),
         4 => (shape(), vector(1.5), turn(), velocity)
             .prop_map(|(shape, at, turn, velocity)| Event::Appear { shape, at, turn, velocity }),
         2 => (number(), way(), speed())

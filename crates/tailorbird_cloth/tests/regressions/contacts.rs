@@ -17,13 +17,13 @@ fn tables() -> Vec<(&'static str, ClothCollider, Quat)> {
     };
     let corners: Vec<Vec3> = (0..8).map(corner).collect();
     let hull = ClothCollider::convex_hull(&corners).expect("a box");
-    let ColliderShape::ConvexHull(points) = &hull.shape else {
+    let ClothColliderShape::ConvexHull(points) = &hull.shape else {
         panic!("a hull");
     };
     let mesh = ClothCollider::trimesh(points.points(), points.triangles()).expect("a box");
     let bumps = (0..121).map(|k: u8| 0.1 + 0.02 * (2.0 * f32::from(k)).sin());
     let bumps = ClothCollider::height_field(bumps.collect(), 11, Vec2::splat(1.6)).expect("bumps");
-    let side = ColliderShape::Cuboid {
+    let side = ClothColliderShape::Cuboid {
         size: Vec3::new(0.58, 1.2, 0.2),
     };
     let sides = [-0.3, 0.3].map(|x| (Isometry3d::from_translation(Vec3::X * x), side.clone()));
@@ -143,17 +143,20 @@ fn push_ball(
     inv_mass: f32,
 ) {
     let inv_inertia = inv_mass / (0.4 * radius * radius);
-    let mut external = sheet.app.world_mut().resource_mut::<ExternalColliders>();
-    external.push(ExternalCollider {
+    let mut external = sheet
+        .app
+        .world_mut()
+        .resource_mut::<ClothExternalColliders>();
+    external.push(ClothExternalCollider {
         entity,
         part: 0,
-        shape: ColliderShape::Sphere { radius },
+        shape: ClothColliderShape::Sphere { radius },
         friction: 0.5,
         margin: 0.0,
         layers: ClothLayers::ALL,
         start: Isometry3d::from_translation(start),
         end: Isometry3d::from_translation(end),
-        body: Some(ColliderBody {
+        body: Some(ClothColliderBody {
             body: entity,
             inv_mass: Vec3::splat(inv_mass),
             inv_inertia: Mat3::IDENTITY * inv_inertia,

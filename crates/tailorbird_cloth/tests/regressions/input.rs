@@ -42,7 +42,7 @@ const DT: f32 = 1.0 / 60.0;
 #[test]
 fn a_velocity_spike_when_a_kinematic_vertex_is_applied_only_in_the_first_substep() {
     // Pins that the game moves.
-    let mut sheet = noted(ClothPins::edges([GridEdge::Top]));
+    let mut sheet = noted(ClothPins::edges([ClothEdge::Top]));
     let rest: Vec<Vec3> = sheet.particles().positions().take(9).collect();
     for step in 1..=20u8 {
         let way = Vec3::X * SPEED * DT * f32::from(step);
@@ -148,11 +148,14 @@ fn the_cloth_vanishing_after_an_extreme_move() {
             // Something that is told to go through the sheet within a step, which nothing stops.
             let aside = |z: f32| Isometry3d::from_translation(Vec3::new(0.3, 0.2, z));
             let way = far.min(1e4);
-            let mut external = sheet.app.world_mut().resource_mut::<ExternalColliders>();
-            external.push(ExternalCollider {
+            let mut external = sheet
+                .app
+                .world_mut()
+                .resource_mut::<ClothExternalColliders>();
+            external.push(ClothExternalCollider {
                 entity: plate,
                 part: 0,
-                shape: ColliderShape::Cuboid {
+                shape: ClothColliderShape::Cuboid {
                     size: Vec3::new(0.8, 0.6, 0.02),
                 },
                 friction: 0.5,
@@ -186,7 +189,7 @@ fn motion_depending_on_dt_squared() {
             TimePlugin,
             ClothPlugin::new(Update),
         ))
-        .insert_resource(Wind::vacuum())
+        .insert_resource(ClothWind::vacuum())
         .insert_resource(ClothSettings {
             gravity: Vec3::ZERO,
             ..ClothSettings::default()

@@ -133,7 +133,7 @@ mod tests {
     use crate::{
         kernels::lanes::levels,
         topology::test_meshes::random,
-        wind::{self, Turbulence},
+        wind::{self, ClothTurbulence},
     };
 
     #[test]
@@ -157,9 +157,9 @@ mod tests {
             },
             WindRegion::Sphere { radius: 1.2 },
         ];
-        let turbulence = Turbulence {
+        let turbulence = ClothTurbulence {
             speed: 2.0,
-            ..Turbulence::default()
+            ..ClothTurbulence::default()
         };
         for shape in shapes {
             for falloff in [0.0, 0.4] {

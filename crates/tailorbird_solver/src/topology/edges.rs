@@ -19,7 +19,7 @@ use super::{
     repair::Repaired,
     weave::Weave,
 };
-use crate::error::ShapeError;
+use crate::error::ClothShapeError;
 
 /// Tolerance of a plane mesh: distance of a particle from the plane, as a part of the square root of twice the area.
 const FLAT: f32 = 1e-4;
@@ -35,10 +35,10 @@ pub(super) fn build(
     uvs: &[Vec2],
     weld_distance: f32,
     scale: Vec3,
-) -> Result<Topology, ShapeError> {
+) -> Result<Topology, ClothShapeError> {
     let repaired = Repaired::new(positions, indices, weld_distance, scale);
     if repaired.triangles.is_empty() {
-        return Err(ShapeError::NoTriangles {
+        return Err(ClothShapeError::NoTriangles {
             vertices: positions.len(),
             triangles: 0,
         });
@@ -219,8 +219,8 @@ mod tests {
         assert_eq!(
             topology.dropped,
             [
-                ShapeError::DegenerateTriangles { count: 2, first: 8 },
-                ShapeError::DuplicateTriangles {
+                ClothShapeError::DegenerateTriangles { count: 2, first: 8 },
+                ClothShapeError::DuplicateTriangles {
                     count: 1,
                     first: 10
                 },
@@ -235,7 +235,7 @@ mod tests {
             Topology::build(&ClothShape::mesh(line, [0, 1, 2]), Vec3::ONE).expect_err("degenerate");
         assert_eq!(
             error,
-            ShapeError::NoTriangles {
+            ClothShapeError::NoTriangles {
                 vertices: 3,
                 triangles: 0
             }

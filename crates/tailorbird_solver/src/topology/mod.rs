@@ -31,7 +31,7 @@ use std::sync::OnceLock;
 use bevy_math::{UVec2, Vec3};
 
 use crate::{
-    error::ShapeError,
+    error::ClothShapeError,
     memory::heap,
     shape::{ClothShape, check_positions},
 };
@@ -43,7 +43,7 @@ use layout::Layout;
 use neighbors::{NeighborLists, Neighbors};
 use order::ParticleOrder;
 use repair::TriangleCopy;
-use report::MeshReport;
+use report::ClothMeshReport;
 use triangles::Triangles;
 
 /// What is computed once from the rest shape. Particles are in storage order throughout.
@@ -87,9 +87,9 @@ pub struct Topology {
     /// Made when they are asked for; never for a lattice.
     neighbors: OnceLock<NeighborLists>,
     /// What was left out.
-    pub dropped: Vec<ShapeError>,
+    pub dropped: Vec<ClothShapeError>,
     /// What was found in a mesh; nothing in a grid.
-    pub report: MeshReport,
+    pub report: ClothMeshReport,
 }
 
 impl Topology {
@@ -98,10 +98,10 @@ impl Topology {
     /// # Errors
     /// What is wrong with the shape or the scale. What is wrong with a mesh and can be repaired is, and is told in
     /// [`Topology::report`]; triangles that are left out are listed in [`Topology::dropped`] as well.
-    pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ShapeError> {
+    pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ClothShapeError> {
         shape.check()?;
         if !scale.is_finite() || scale.to_array().contains(&0.0) {
-            return Err(ShapeError::Scale { value: scale });
+            return Err(ClothShapeError::Scale { value: scale });
         }
         let mut topology = match shape {
             ClothShape::Grid { resolution, .. } => {

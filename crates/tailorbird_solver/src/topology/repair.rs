@@ -7,10 +7,10 @@ use bevy_math::{Vec2, Vec3};
 use super::{
     mesh_edges::MeshEdges,
     orientation::Orientation,
-    report::{Island, MeshReport},
+    report::{ClothMeshReport, Island},
     weld::weld,
 };
-use crate::error::ShapeError;
+use crate::error::ClothShapeError;
 
 /// Ratio of a triangle's area to the square of its longest edge below which it counts as degenerate.
 const DEGENERATE: f32 = 1e-6;
@@ -49,7 +49,7 @@ pub struct Repaired {
     /// Edges of `triangles`.
     pub edges: MeshEdges,
     /// Findings.
-    pub report: MeshReport,
+    pub report: ClothMeshReport,
 }
 
 impl Repaired {
@@ -106,17 +106,17 @@ impl Repaired {
     }
 
     /// Triangles and vertices that were left out of the simulation though they were meant to be part of it.
-    pub(super) fn dropped(&self) -> Vec<ShapeError> {
+    pub(super) fn dropped(&self) -> Vec<ClothShapeError> {
         let (degenerate, duplicate) = (self.report.degenerate, self.report.duplicate);
         let mut dropped = Vec::new();
         if degenerate.is_some() {
-            dropped.push(ShapeError::DegenerateTriangles {
+            dropped.push(ClothShapeError::DegenerateTriangles {
                 count: degenerate.count,
                 first: degenerate.first as usize,
             });
         }
         if duplicate.is_some() {
-            dropped.push(ShapeError::DuplicateTriangles {
+            dropped.push(ClothShapeError::DuplicateTriangles {
                 count: duplicate.count,
                 first: duplicate.first as usize,
             });

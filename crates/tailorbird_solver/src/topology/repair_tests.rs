@@ -151,15 +151,15 @@ fn what_is_too_far_or_too_small_to_count_is_refused() {
     let error = |size, scale| Topology::build(&mesh(size), Vec3::splat(scale)).err();
     assert!(matches!(
         error(1e7, 1.0),
-        Some(ShapeError::PositionTooFar { vertex: 1, .. })
+        Some(ClothShapeError::PositionTooFar { vertex: 1, .. })
     ));
     assert!(matches!(
         error(1.0, 1e7),
-        Some(ShapeError::PositionTooFar { .. })
+        Some(ClothShapeError::PositionTooFar { .. })
     ));
     assert!(matches!(
         error(1e-7, 1.0),
-        Some(ShapeError::NoTriangles { .. })
+        Some(ClothShapeError::NoTriangles { .. })
     ));
     assert_eq!(error(1e-3, 1.0), None);
     assert_eq!(error(1e5, 1.0), None);

@@ -20,7 +20,7 @@ use bevy_reflect::prelude::*;
 /// | [`non_manifold`](Self::non_manifold) | simulated; bending is resisted between the two triangles that lie flattest, then between the next two, and none that are folded by more than 60° or of more than eight |
 /// | [`islands`](Self::islands) | simulated as one cloth |
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
-pub struct MeshReport {
+pub struct ClothMeshReport {
     /// Number of vertices of the mesh.
     pub vertices: usize,
     /// Number of triangles of the mesh.
@@ -85,7 +85,7 @@ impl Finding {
     }
 }
 
-impl MeshReport {
+impl ClothMeshReport {
     /// Returns whether the triangles are those of the mesh, unchanged, and form a surface with two sides.
     pub fn is_clean(&self) -> bool {
         let found = [
@@ -100,7 +100,7 @@ impl MeshReport {
     }
 }
 
-impl fmt::Display for MeshReport {
+impl fmt::Display for ClothMeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,

@@ -15,7 +15,7 @@ use bevy_reflect::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-pub struct Turbulence {
+pub struct ClothTurbulence {
     /// Root mean square of the speed that it adds [m/s]; 0 is none.
     pub speed: f32,
     /// Size of the largest eddies \[m\].
@@ -24,7 +24,7 @@ pub struct Turbulence {
     pub seed: u32,
 }
 
-impl Default for Turbulence {
+impl Default for ClothTurbulence {
     fn default() -> Self {
         Self {
             speed: 0.0,
@@ -51,7 +51,7 @@ pub struct Wave {
     pub phase: f32,
 }
 
-impl Turbulence {
+impl ClothTurbulence {
     /// Returns whether there is any.
     pub fn is_some(&self) -> bool {
         self.speed > 0.0
