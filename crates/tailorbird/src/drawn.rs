@@ -65,7 +65,7 @@ pub struct ClothDrawnHolds {
 /// A particle that is drawn at a point of a target.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    /// In storage order.
+    /// Index in storage order.
     particle: u32,
     target: u32,
     /// In the target's own space \[m\].
@@ -75,10 +75,10 @@ struct Held {
 /// A free particle that moves along.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
-    /// In storage order.
+    /// Index in storage order.
     particle: u32,
     target: u32,
-    /// 0 to 1.
+    /// Random number from 0 to 1.
     weight: f32,
 }
 

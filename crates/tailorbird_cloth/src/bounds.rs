@@ -32,7 +32,7 @@ impl ClothBounds {
 }
 
 impl ClothBounds {
-    /// The box around all particles, now and a step ago; `None` where there are none.
+    /// Box around all particles, now and a step ago; `None` without particles.
     pub(crate) fn around(level: Level, particles: &ClothParticles) -> Option<Self> {
         let Bounds { min, max } = Bounds::around(level, particles)?;
         Some(Self { min, max })

@@ -64,7 +64,7 @@ pub struct Cloth {
 }
 
 impl Cloth {
-    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
+    /// Distance \[m\] at which the vertices of a mesh are welded, unless another is set.
     pub const WELD_DISTANCE: f32 = ClothShape::WELD_DISTANCE;
 
     /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner lies at the

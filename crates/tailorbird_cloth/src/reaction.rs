@@ -26,7 +26,7 @@ use tailorbird_solver::reaction::PinForces;
 pub struct ClothPinForces(#[reflect(ignore)] pub(crate) PinForces);
 
 impl ClothPinForces {
-    /// The sum over all that is held, mean over the last step, in world axes \[N\].
+    /// Sum over all held particles, mean over the last step, in world axes \[N\].
     pub fn force(&self) -> Vec3 {
         self.0.force()
     }

@@ -50,7 +50,7 @@ impl Default for SimdLevel {
     }
 }
 
-/// At most this many times as many substeps are taken for bodies that a cloth carries.
+/// Largest factor of the substeps for bodies that a cloth carries.
 const MOST_LOADED: f32 = 4.0;
 
 /// Least gravity for the weight that loads are compared with [m/s²].
@@ -128,7 +128,7 @@ impl ClothStep {
         own.map(|own| own.0).or(self.settings.substeps)
     }
 
-    /// How many substeps this cloth takes where it need not keep step with others.
+    /// Number of substeps of this cloth if it need not keep step with others.
     pub(crate) fn substeps_of(
         &self,
         (solver, own): (ClothSolver, Option<&ClothSubsteps>),
@@ -193,7 +193,7 @@ pub fn step_runs(step: Res<ClothStep>) -> bool {
     step.running
 }
 
-/// How many more times as many substeps as at rest a cloth wants for a storm that stretches it [-]. The classic solver does not look.
+/// Additional substeps of a cloth that a storm stretches, as a multiple of their number at rest [-]. The classic solver takes none.
 fn more_substeps(solver: ClothSolver, particles: &ClothParticles) -> f32 {
     match solver {
         ClothSolver::Chains => particles.0.state.effort.more_substeps(),

@@ -146,7 +146,7 @@ impl SubstepContact {
         }
     }
 
-    /// With this Coulomb friction [-].
+    /// Sets the Coulomb friction [-].
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }

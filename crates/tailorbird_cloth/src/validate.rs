@@ -42,7 +42,7 @@ pub fn guard_finite(
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`guard_finite`] does for one cloth.
+    /// Runs [`guard_finite`] for one cloth.
     pub(crate) fn guard(&mut self, level: Level, commands: &ParallelCommands) {
         let Report {
             strained,

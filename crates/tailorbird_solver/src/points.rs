@@ -43,14 +43,14 @@ impl Points {
             .all(|values| values.len() == len)
     }
 
-    /// Whether there are at least as many as this of each coordinate.
+    /// Returns whether there are at least `len` of each coordinate.
     pub fn has(&self, len: usize) -> bool {
         [&self.x, &self.y, &self.z]
             .into_iter()
             .all(|values| values.len() >= len)
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()

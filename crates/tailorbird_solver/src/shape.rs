@@ -35,8 +35,7 @@ pub enum ClothShape {
         /// triangles where they are not finite, along the edges.
         #[cfg_attr(feature = "serialize", serde(default))]
         uvs: Vec<Vec2>,
-        /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
-        /// hold together.
+        /// Distance \[m\] up to which vertices become one particle, so that seams of UVs or normals hold together.
         #[cfg_attr(feature = "serialize", serde(default = "weld_distance"))]
         weld_distance: f32,
     },

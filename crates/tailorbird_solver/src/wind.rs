@@ -6,7 +6,7 @@ use bevy_math::Vec3;
 
 pub use turbulence::{ClothTurbulence, WAVES, Wave, sine};
 
-/// Where a wind blows, in the axes of its entity.
+/// Region in which a wind blows, in the axes of its entity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WindRegion {
     /// In the whole world.
@@ -25,7 +25,7 @@ pub enum WindRegion {
 }
 
 impl WindRegion {
-    /// How far a point in the shape's axes is inside its border \[m\]; negative outside.
+    /// Distance of a point in the shape's axes from its border, inwards \[m\]; negative outside.
     pub fn depth(self, point: Vec3) -> f32 {
         match self {
             Self::Everywhere => f32::INFINITY,

@@ -43,7 +43,7 @@ pub struct ClothFabricLibrary {
     materials: HashMap<Key, AssetId<StandardMaterial>>,
 }
 
-/// What two cloths have in common that look alike.
+/// Key of cloths that look alike.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct Key {
     /// Name of the fabric, and whether it has holes.

@@ -59,7 +59,7 @@ pub use mipmaps::{Texels, with_mipmaps};
 pub struct ClothFabric {
     /// Name, by which its textures begin; two fabrics of one name have the same textures.
     pub name: Cow<'static, str>,
-    /// How it moves.
+    /// Material for the simulation.
     pub material: ClothMaterial,
     /// Colour where it has no textures: the mean of that of its texture.
     pub color: Color,
@@ -69,7 +69,7 @@ pub struct ClothFabric {
     pub reflectance: f32,
     /// The part of the light that shines through, 0 to 1 [-]: [`StandardMaterial::diffuse_transmission`].
     pub transmission: f32,
-    /// Whether there is nothing at some places of its texture.
+    /// True if its texture has holes.
     pub has_holes: bool,
     /// Side of one tile of its textures \[m\].
     pub tile: f32,
@@ -169,7 +169,7 @@ impl ClothFabric {
         (self.material, ClothLook::new(self).with_dye(dye))
     }
 
-    /// How its surface takes light, without textures.
+    /// Surface material without textures.
     fn surface(&self, dye: Color, textured: bool) -> StandardMaterial {
         StandardMaterial {
             base_color: if textured {
@@ -212,13 +212,13 @@ fn product(color: Color, dye: Color) -> Color {
     .into()
 }
 
-/// How a cloth looks: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
+/// Look of a cloth: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothLook {
-    /// What it is made of.
+    /// Fabric of the cloth.
     pub fabric: ClothFabric,
-    /// What the fabric's own colour is multiplied with.
+    /// Factor of the fabric's own colour.
     pub dye: Color,
     /// True if it has the textures of its fabric.
     pub textured: bool,
@@ -227,7 +227,7 @@ pub struct ClothLook {
 }
 
 impl ClothLook {
-    /// As the fabric comes, undyed.
+    /// Look of a fabric, undyed.
     pub fn new(fabric: ClothFabric) -> Self {
         Self {
             fabric,

@@ -1,10 +1,10 @@
-//! What vertices are bound to.
+//! Bindings of vertices to particles.
 
 use bevy_math::Vec3;
 
 use super::drawn::Drawn;
 
-/// What a vertex of a mesh follows. Particles are in storage order.
+/// Binding of a vertex of a mesh. Particles are in storage order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClothVertexBinding {
     /// A particle.
@@ -18,7 +18,7 @@ pub enum ClothVertexBinding {
     },
 }
 
-/// What the vertices of a mesh are bound to: most to particles, one each; the others are listed.
+/// Bindings of the vertices of a mesh: most to particles, one each; the others are listed.
 #[derive(Debug, Default)]
 pub(super) struct Bindings {
     /// For each vertex its particle; of one on a triangle, the corner that is nearest to it.

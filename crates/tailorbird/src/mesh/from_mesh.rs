@@ -77,7 +77,7 @@ impl ClothFromMesh {
     }
 }
 
-/// Where warp and weft of a mesh run.
+/// Directions of the warp and weft of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum ClothMeshThreads {

@@ -28,19 +28,19 @@ pub const SIZE: f32 = 2.0;
 /// Demands of the scenes.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Demands {
-    /// How much farther apart than the sheet is long the posts stand, as a part of 2 m.
+    /// Excess of the distance of the posts over the length of the sheet, as a part of 2 m.
     #[arg(long, value_name = "F", default_value_t = 0.1, value_parser = values::finite, allow_hyphen_values = true)]
     pub apart: f32,
 
-    /// How much larger than the tube the ball within it is, as a part of its radius.
+    /// Excess of the ball's radius over that of the tube around it, as a part of it.
     #[arg(long, value_name = "F", default_value_t = 0.03, value_parser = values::not_negative, allow_hyphen_values = true)]
     pub tight: f32,
 
-    /// How far a body reaches into the sheet [m].
+    /// Depth of a body within the sheet [m].
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = values::not_negative, allow_hyphen_values = true)]
     pub depth: f32,
 
-    /// How fast the ball flies [m/s].
+    /// Speed of the ball [m/s].
     #[arg(long, value_name = "V", default_value_t = 20.0, value_parser = values::positive, allow_hyphen_values = true)]
     pub speed: f32,
 
@@ -48,7 +48,7 @@ pub struct Demands {
     #[arg(long, value_enum, default_value_t = Body::Ball)]
     pub body: Body,
 
-    /// How far what holds the curtain is moved in the scenes pause-move and hop [m].
+    /// Displacement of the curtain's holder in the scenes pause-move and hop [m].
     #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
     pub way: f32,
 

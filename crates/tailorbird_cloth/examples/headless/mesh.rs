@@ -3,7 +3,7 @@
 use bevy_math::{Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
 
-/// How far inner vertices of the irregular sheet are moved each way, as a part of the cells.
+/// Largest displacement of inner vertices of the irregular sheet along each axis, as a part of the cells.
 pub const JITTER: f32 = 0.25;
 
 /// Vertices as near as this count as the same place [m].

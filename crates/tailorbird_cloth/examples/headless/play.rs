@@ -19,14 +19,14 @@ use super::{
 /// The tube: its radius and height [m].
 const TUBE: Vec2 = Vec2::new(0.3, 1.0);
 
-/// What happens to the sheet from step to step.
+/// Play of a scene from step to step.
 pub struct Play {
     scene: Scene,
     demands: Demands,
     side: u32,
     /// The post that moves, or the body.
     actor: Option<Entity>,
-    /// Whether it was moved.
+    /// True if the sheet was moved.
     moved: bool,
 }
 
@@ -103,7 +103,7 @@ impl Play {
             .to_vec();
     }
 
-    /// What happens between two frames, before the step that ends at `time` [s]: while time stands still.
+    /// Events between two frames, before the step that ends at `time` [s]: while time stands still.
     pub fn interrupt(&mut self, app: &mut App, time: f32) {
         if self.scene != Scene::PauseMove || self.moved || time <= 2.0 {
             return;
@@ -193,7 +193,7 @@ pub fn cloth(args: &Args) -> Cloth {
     }
 }
 
-/// Where the cloth of a scene is: rows along +z at a height of 1 m, or upright, 1 m above the ground.
+/// Pose of the cloth of a scene: rows along +z at a height of 1 m, or upright, 1 m above the ground.
 pub fn place(scene: Scene) -> Isometry3d {
     let rotation = if scene.is_upright() {
         Quat::IDENTITY

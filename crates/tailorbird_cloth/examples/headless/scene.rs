@@ -16,7 +16,7 @@ use super::{
     play::{self, Play},
 };
 
-/// How far a seed moves particles [m].
+/// Displacement of particles by a seed [m].
 const NUDGE: f32 = 1e-4;
 
 /// An app with one sheet.

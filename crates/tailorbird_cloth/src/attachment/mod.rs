@@ -272,7 +272,7 @@ impl ClothAttachment {
     }
 }
 
-/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
+/// Particles and target of an attachment, found when it or the cloth changes. Written by [`prepare_attachments`] alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothAttachmentState {
@@ -281,26 +281,26 @@ pub struct ClothAttachmentState {
     /// Particles in storage order, and their points in the target's own space \[m\].
     #[reflect(ignore)]
     points: Vec<(u32, Vec3)>,
-    /// Of each particle [m/N]; none for a rigid attachment.
+    /// Compliance of each particle [m/N]; `None` for a rigid attachment.
     compliances: Option<Vec<f32>>,
     target: Option<Entity>,
-    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
+    /// Pose of the target at the end of the step before; of a sleeping cloth, when it fell asleep.
     #[reflect(ignore)]
     pose: Option<Pose>,
-    /// Where the target was seen last.
+    /// Pose of the target when it was last seen.
     #[reflect(ignore)]
     seen: Option<Pose>,
-    /// Of the target in the last step, as far as it was felt [m/s].
+    /// Velocity of the target in the last step, as far as it was felt [m/s].
     velocity: Vec3,
     /// The scale of the cloth that the points were found for.
     scale: Vec3,
-    /// How many particles that had.
+    /// Number of particles of that topology.
     particles: usize,
-    /// Of the topology.
+    /// Revision of the topology.
     revision: u64,
-    /// Whether the particles are still to be found.
+    /// True if the particles are still to be found.
     stale: bool,
-    /// What is wrong with the selections and points.
+    /// Errors in the selections and points.
     #[reflect(ignore)]
     wrong: Vec<ClothErrorKind>,
 }

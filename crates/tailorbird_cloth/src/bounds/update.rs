@@ -18,7 +18,7 @@ pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<C
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`update_bounds`] does for one cloth.
+    /// Runs [`update_bounds`] for one cloth.
     pub(crate) fn update_bounds(&mut self, level: Level) {
         if let Some(bounds) = ClothBounds::around(level, &self.particles) {
             self.bounds.set_if_neq(bounds);

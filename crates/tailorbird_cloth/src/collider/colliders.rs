@@ -32,7 +32,7 @@ impl ClothColliderState {
 /// The colliders of this step with their motion. Written by [`snapshot_colliders`](super::snapshot_colliders) alone.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ClothColliders {
-    /// As the solver has them.
+    /// Colliders in the form of the solver.
     pub(crate) list: Colliders,
     /// The bodies that cloth pushes, in the order of entities.
     pub(super) bodies: Vec<ClothColliderBody>,
@@ -45,7 +45,7 @@ impl ClothColliders {
         self.list.colliders.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.list.colliders.is_empty()
     }

@@ -14,7 +14,7 @@ use crate::error::ClothErrorKind;
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct HeightField {
-    /// As the solver has it.
+    /// Field in the form of the solver.
     pub(super) field: Field,
 }
 

@@ -23,7 +23,7 @@ use tailorbird_solver::contact::colliders::Layers;
 pub struct ClothLayers {
     /// Layers of its own, a bit each.
     pub memberships: u32,
-    /// The layers that it meets, a bit each.
+    /// Layers that it meets, a bit each.
     pub filters: u32,
 }
 

@@ -15,7 +15,7 @@ use crate::{
     step::ClothStep,
 };
 
-/// What all parts of a collider have in common.
+/// Common properties of all parts of a collider.
 struct Whole<'a> {
     step: u64,
     entity: Entity,

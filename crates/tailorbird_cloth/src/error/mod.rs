@@ -52,7 +52,7 @@ pub enum ClothErrorKind {
     AssetNotLoaded {
         /// The asset.
         asset: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The vertices have no attribute that names the pins.

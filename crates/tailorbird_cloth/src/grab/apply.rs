@@ -18,7 +18,7 @@ use crate::{
     topology::ClothTopology,
 };
 
-/// How much a particle at this distance is pulled along: (1 − d²/r²)², 1 at the hand, 0 with no kink at the rim.
+/// Part of the hand's motion that a particle at this distance takes: (1 − d²/r²)², 1 at the hand, 0 with no kink at the rim.
 fn falloff(distance: f32, radius: f32) -> f32 {
     let q = (1.0 - (distance / radius).powi(2)).max(0.0);
     q * q

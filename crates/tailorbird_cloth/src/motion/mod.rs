@@ -302,24 +302,24 @@ pub struct ClothMotionState {
     /// Particles whose largest distance is 0.
     #[reflect(ignore)]
     held: Vec<u32>,
-    /// Whether the targets move in this step.
+    /// True if the targets move in this step.
     moving: bool,
     disturbed: bool,
-    /// How far the target goes in this step that goes furthest \[m\].
+    /// Largest displacement of a target in this step \[m\].
     furthest: f32,
-    /// Which targets they were aimed at.
+    /// Identity of the targets that they were aimed at.
     aimed: [u64; 3],
     hops: ClothHopDetector,
     /// Whether a step was left out.
     idle: bool,
-    /// Of the topology.
+    /// Revision of the topology.
     revision: u64,
 }
 
-/// As many as are needed where frames are about equally long.
+/// Number of kept frames: enough if frames are about equally long.
 const KEPT: usize = 4;
 
-/// Where the targets were in the last frames. Comes with [`ClothMotionTargets`].
+/// Targets of the last frames. Comes with [`ClothMotionTargets`].
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothTargetSamples {
@@ -333,17 +333,17 @@ pub struct ClothTargetSamples {
     /// When this step of the fixed loop began.
     #[reflect(ignore)]
     began: Option<Tick>,
-    /// For how many steps more they count as moved by the fixed loop.
+    /// Number of steps for which they still count as moved by the fixed loop.
     fixed: u8,
     hops: ClothHopDetector,
     frame: u64,
-    /// Whether they were put elsewhere since the last step.
+    /// True if they were put elsewhere since the last step.
     jumped: bool,
 }
 
 #[derive(Clone, Debug, Default)]
 struct SeenTargets {
-    /// Of the frame.
+    /// Number of the frame.
     number: u64,
     /// Different whenever it is set.
     version: u64,

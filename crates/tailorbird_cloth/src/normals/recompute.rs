@@ -35,7 +35,7 @@ impl ClothStagesItem<'_, '_> {
         }
     }
 
-    /// What [`recompute_normals`] does for one cloth.
+    /// Runs [`recompute_normals`] for one cloth.
     pub(crate) fn recompute_normals(&mut self, level: Level, workers: Workers) {
         let (topology, shading) = (self.topology, *self.shading);
         let position = &self.particles.0.state.position;

@@ -109,7 +109,7 @@ pub(crate) fn see_frame(
     }
 }
 
-/// How long a unit of a parent's space is in the world \[m\].
+/// Length of a unit of a parent's space in the world \[m\].
 fn metre_of(parent: Option<Entity>, helper: &TransformHelper) -> f32 {
     parent
         .and_then(|parent| helper.compute_global_transform(parent).ok())

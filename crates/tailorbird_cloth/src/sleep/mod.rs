@@ -88,9 +88,9 @@ impl ClothSleep {
     }
 }
 
-/// Whether somebody sees the cloth: its picture, or its shadow.
+/// True if somebody sees the cloth: its picture, or its shadow.
 ///
-/// Whoever draws cloth says so, here: `tailorbird` does where Bevy draws it; without that, all cloths are seen. It matters where
+/// The code that draws cloth sets it: `tailorbird` does if Bevy draws it; without that, all cloths are seen. It has an effect if
 /// [`ClothSleep::unseen`] is set.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
@@ -102,22 +102,22 @@ impl Default for ClothSeen {
     }
 }
 
-/// Whether a cloth sleeps because nobody sees it.
+/// Sleep of a cloth that nobody sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 enum Unseen {
-    /// It is seen, or sleeps for other reasons alone.
+    /// The cloth is seen, or sleeps for other reasons alone.
     #[default]
     No,
     /// After this step it was seen no more.
     Since(u64),
-    /// The same, and it is to take one step all the same.
+    /// It sleeps unseen, but is to take one step.
     Touched(u64),
-    /// It is seen again in this step, or takes one.
+    /// The cloth is seen again in this step, or takes one.
     Back,
 }
 
 impl Unseen {
-    /// What becomes of it where something happened to the cloth.
+    /// State after something happened to the cloth.
     fn touched(self) -> Self {
         match self {
             Self::Since(step) => Self::Touched(step),

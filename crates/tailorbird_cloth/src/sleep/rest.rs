@@ -193,7 +193,7 @@ pub fn rest_cloths(
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`settle_cloths`] does for one cloth.
+    /// Runs [`settle_cloths`] for one cloth.
     pub(crate) fn settle(&mut self, step: &ClothStep, colliders: &ClothColliders) {
         if self.particles.is_empty() || !self.sleep.errors().is_empty() {
             return;
@@ -218,7 +218,7 @@ impl ClothStagesItem<'_, '_> {
         self.particles.0.slow_down(part_kept(self.rest.seconds));
     }
 
-    /// What [`rest_cloths`] does for one cloth.
+    /// Runs [`rest_cloths`] for one cloth.
     pub(crate) fn rest(
         &mut self,
         step: &ClothStep,

@@ -33,11 +33,11 @@ fn app(scene: &dyn Fn(&mut World)) -> App {
     app
 }
 
-/// How many steps of the game have begun.
+/// Number of steps of the game that have begun.
 #[derive(Resource, Clone, Default)]
 struct Played(u32);
 
-/// What the game does in this step.
+/// Actions of the game in a step.
 #[derive(Component, Clone, Copy)]
 struct Plays(fn(u32, EntityWorldMut));
 
@@ -155,7 +155,7 @@ fn bits(app: &mut App, steps: usize) -> Vec<(Vec<bool>, Vec<u32>)> {
     (0..steps).map(|_| step()).collect()
 }
 
-/// What the game itself puts back: what it wrote, and the time.
+/// State that the game itself puts back: its own writes, and the time.
 struct Game {
     places: Vec<(Entity, Transform, GlobalTransform)>,
     targets: Vec<(Entity, ClothMotionTargets)>,

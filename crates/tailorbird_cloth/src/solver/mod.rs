@@ -77,7 +77,7 @@ pub enum ClothSolver {
 /// The number of substeps of a cloth, in place of [`ClothSettings::substeps`](crate::settings::ClothSettings::substeps) and of as many as it
 /// needs: fewer for one far away, more for one that must not stretch. Optional; 0 counts as 1.
 ///
-/// Where a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep), all cloths take as many as the one that takes
+/// If a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep), all cloths take as many as the one that takes
 /// most.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]

@@ -129,7 +129,7 @@ impl ClothWindZone {
     }
 }
 
-/// Where a zone of wind blows, in the entity's axes.
+/// Region in which a wind blows, in the entity's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -170,7 +170,7 @@ impl ClothWindShape {
     }
 }
 
-/// How a wind of this shape meets a ball: not at all (`None`), in the same way everywhere, or not.
+/// Overlap of a wind of this shape with a ball: none (`None`), the same wind everywhere, or a varying one.
 pub(super) fn is_whole_in(
     shape: WindRegion,
     falloff: f32,

@@ -146,7 +146,7 @@ impl Proxy {
     }
 }
 
-/// A body in a substep.
+/// State of a body in a substep.
 pub struct Struck<'a> {
     pub body: &'a Body,
     pub proxy: &'a mut Proxy,

@@ -19,7 +19,7 @@ pub struct Breeze {
     /// Its eddies, where it has any.
     pub waves: Option<[Wave; WAVES]>,
     pub shape: WindRegion,
-    /// \[m\]
+    /// Width of the border over which the wind rises \[m\].
     pub falloff: f32,
     /// From the frame's axes to those of the shape.
     pub to_own: Isometry3d,

@@ -52,7 +52,7 @@ pub fn damp(
         Layout::Sheet(SheetLayout { lattice, .. }) => {
             let sheet = bare(lattice, position, inv_mass);
             let survey = squeeze::survey(level, sheet, lattice.spacing, allowed);
-            // What carries bodies takes more substeps for them already, and would throw them.
+            // A cloth that carries bodies takes more substeps for them already, and would throw them.
             if couplings.is_empty() {
                 let side = lattice.columns.max(lattice.rows) as f32;
                 let longest = Longest {

@@ -25,7 +25,7 @@ pub struct AliveEdges {
 }
 
 impl AliveEdges {
-    /// Those of a sheet of which nothing is torn.
+    /// Edges of a sheet of which nothing is torn.
     pub fn all(lattice: &Lattice) -> Self {
         let words = (lattice.columns as usize * lattice.rows as usize).div_ceil(64);
         Self {
@@ -33,7 +33,7 @@ impl AliveEdges {
         }
     }
 
-    /// Whether the edge that begins at a particle is whole.
+    /// Returns whether the edge that begins at a particle is whole.
     ///
     /// # Panics
     /// When the particle is out of range.
@@ -53,7 +53,7 @@ impl AliveEdges {
         was
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.bits.iter().map(heap).sum()
     }

@@ -14,12 +14,12 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The area of a cell \[m²\].
+    /// Area of a cell \[m²\].
     pub fn cell_area(&self) -> f32 {
         self.spacing.x * self.spacing.y
     }
 
-    /// A quarter of the cells around a particle \[m²\].
+    /// Area of a particle: a quarter of the cells around it \[m²\].
     pub fn area_of(&self, particle: usize) -> f32 {
         let (columns, rows) = (self.columns as usize, self.rows as usize);
         let beside = |at: usize, len: usize| if at == 0 || at + 1 == len { 1.0 } else { 2.0 };
@@ -27,7 +27,7 @@ impl Lattice {
         0.25 * self.cell_area() * around
     }
 
-    /// The particles at the ends of the edges along rows, then of those along columns.
+    /// Particles at the ends of the edges along rows, then of those along columns.
     pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
         let Self { columns, rows, .. } = *self;
         let along = move |last_column, last_row, step| {

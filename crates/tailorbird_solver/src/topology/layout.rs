@@ -6,7 +6,7 @@ use super::{
     lattice::Lattice,
 };
 
-/// How the particles of a cloth lie, and what joins them.
+/// Layout of the particles of a cloth, and the constraints between them.
 #[derive(Clone, Debug)]
 pub enum Layout {
     /// In columns and rows at equal spacing: nothing is stored of edges, diagonals and threads, and of hinges only where the sheet is
@@ -19,7 +19,7 @@ pub enum Layout {
 /// Columns and rows of particles.
 #[derive(Clone, Debug)]
 pub struct SheetLayout {
-    /// How many, and how far apart.
+    /// Number of columns and rows, and their spacing.
     pub lattice: Lattice,
     /// The edges that are whole, where some are torn.
     pub alive: Option<AliveEdges>,
@@ -42,7 +42,7 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         match self {
             Self::Sheet(sheet) => sheet.alive.as_ref().map_or(0, AliveEdges::memory_bytes),
@@ -65,7 +65,7 @@ impl SheetLayout {
         self.lattice.edges().filter(is_alive)
     }
 
-    /// Whether the edge that begins at a particle is whole.
+    /// Returns whether the edge that begins at a particle is whole.
     pub fn is_alive(&self, family: Family, particle: u32) -> bool {
         let is_alive = |alive: &AliveEdges| alive.is_alive(family, particle);
         self.alive.as_ref().is_none_or(is_alive)

@@ -26,7 +26,7 @@ impl Deref for Neighbors<'_> {
 }
 
 impl Neighbors<'_> {
-    /// Those of a particle of a sheet that whole edges join; none where it is out of range.
+    /// Neighbours of a particle of a sheet by whole edges; none where it is out of range.
     pub(super) fn in_sheet(sheet: &SheetLayout, particle: u32) -> Self {
         const AROUND: [((i64, i64), Family); 8] = [
             ((1, 0), Family::Row),

@@ -1,4 +1,4 @@
-//! Which particles hang together.
+//! Pieces: particles that hang together.
 
 use super::Topology;
 

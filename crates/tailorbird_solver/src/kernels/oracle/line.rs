@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::{Cloth, cases, cloths, dense, vector};
 use crate::kernels::{edges::LineStiffness, lanes::levels, lattice};
 
-/// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
+/// Least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
 const COMPLIANCE: f64 = 5e-4;
 
 /// One line of particles, with the parameters of its solve.
