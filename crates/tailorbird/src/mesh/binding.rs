@@ -43,7 +43,7 @@ impl Bindings {
         &self.particles
     }
 
-    /// What a vertex follows; none where there is no such vertex.
+    /// The binding of a vertex; none if there is no such vertex.
     pub fn get(&self, vertex: u32) -> Option<ClothVertexBinding> {
         let found = self
             .on_triangles

@@ -9,7 +9,7 @@ use tailorbird_cloth::normals::ClothShading;
 use super::{ClothMeshWrite, ClothVertexBinding, follow::Follow, packed::Packed};
 use crate::drawn::ClothDrawnHolds;
 
-/// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
+/// Map from a cloth's particles to the vertices of its meshes. Written by this plugin alone.
 #[derive(Component)]
 #[require(ClothDrawnHolds)]
 pub struct ClothMesh {
@@ -40,17 +40,17 @@ pub struct ClothMeshPart {
     pub(super) follow: Follow,
     /// Its vertices; absent before they are known, and where the mesh has no place for them.
     pub(super) packed: Option<Packed>,
-    /// What the vertices show: steps, part of the step, scale.
+    /// State that the vertices show: steps, part of the step, scale.
     pub(super) shows: Option<(u64, f32, Vec3)>,
-    /// Whether the vertices changed since they were written.
+    /// True if the vertices changed since they were written.
     pub(super) fresh: bool,
-    /// Whether the asset has been written since the mesh was built.
+    /// True if the asset has been written since the mesh was built.
     pub(super) in_asset: bool,
-    /// Where the vertices were to go when they were computed last.
+    /// Destination of the vertices when they were computed last.
     pub(super) went: Option<ClothMeshWrite>,
-    /// Whether the last change of the asset was ours.
+    /// True if the last change of the asset was ours.
     pub(crate) own_change: bool,
-    /// Whether others have changed the asset.
+    /// True if others have changed the asset.
     pub(super) outdated: bool,
 }
 
@@ -107,7 +107,7 @@ impl ClothMeshPart {
         self.follow.bindings.particles()
     }
 
-    /// What a vertex of the mesh follows; none where there is no such vertex.
+    /// The binding of a vertex of the mesh; none if there is no such vertex.
     pub fn binding(&self, vertex: u32) -> Option<ClothVertexBinding> {
         self.follow.bindings.get(vertex)
     }
@@ -131,7 +131,7 @@ pub struct ClothMeshOf {
     pub(super) built: Handle<Mesh>,
     /// The mesh that was here before.
     pub(super) source: Option<Handle<Mesh>>,
-    /// Whether its backs are drawn by the triangles of its fronts.
+    /// True if its backs are drawn by the triangles of its fronts.
     pub(super) two_sided: bool,
 }
 

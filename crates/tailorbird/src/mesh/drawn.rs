@@ -5,7 +5,7 @@ use tailorbird_cloth::{normals::ClothNormals, particles::ClothParticles};
 
 use crate::drawn::ClothDrawnHolds;
 
-/// What vertices follow.
+/// State of a cloth that vertices follow.
 #[derive(Clone, Copy)]
 pub(super) struct Drawn<'a> {
     pub particles: &'a ClothParticles,
@@ -18,7 +18,7 @@ pub(super) struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// Whether normals in the cloth's frame are those in its space.
+    /// Returns whether normals in the cloth's frame are those in its space.
     pub fn is_scaled_evenly(&self) -> bool {
         let Vec3 { x, y, z } = self.scale;
         x == y && y == z && x > 0.0

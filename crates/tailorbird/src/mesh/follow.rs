@@ -15,7 +15,7 @@ use super::{
 /// Vertices that a task has at least.
 pub(super) const PIECE: usize = 8192;
 
-/// Which particle and which normal each vertex of a mesh follows.
+/// Particle and normal that each vertex of a mesh follows.
 pub(super) struct Follow {
     pub bindings: Bindings,
     /// For each vertex its normal: of a particle when smooth, of a triangle when flat.

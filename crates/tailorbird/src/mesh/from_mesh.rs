@@ -26,14 +26,14 @@ use super::ClothMeshPins;
 pub struct ClothFromMesh {
     /// Vertices no further apart than this \[m\] become one particle, of different meshes as well.
     pub weld_distance: f32,
-    /// Which vertices are pinned; a pin beside those of [`ClothPins`](tailorbird_cloth::pins::ClothPins). What is painted is kept in
+    /// Vertices that are pinned; one pin beside those of [`ClothPins`](tailorbird_cloth::pins::ClothPins). Painted weights are kept in
     /// [`ClothWeights`](tailorbird_cloth::weights::ClothWeights).
     pub pins: ClothMeshPins,
     /// Meshes below the entity that become the cloth.
     pub parts: ClothMeshParts,
-    /// Where its warp and weft run.
+    /// Directions of its warp and weft.
     pub threads: ClothMeshThreads,
-    /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
+    /// True if the attribute that [`Self::pins`] reads, vertex colours say, is drawn as well. Paint is data: colours that name pins
     /// would tint the cloth.
     pub draw_paint: bool,
 }
@@ -89,7 +89,7 @@ pub enum ClothMeshThreads {
     Edges,
 }
 
-/// Which of the meshes below an entity become its cloth.
+/// The meshes below an entity that become its cloth.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
 pub enum ClothMeshParts {

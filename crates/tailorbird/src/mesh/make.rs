@@ -28,7 +28,7 @@ pub(super) struct ClothMeshSource {
     pub parts: Vec<MeshSource>,
     weld_distance: f32,
     threads: ClothMeshThreads,
-    /// How many cloths had been made when this one was: it tells this one from those of the same shape.
+    /// Number of cloths that had been made when this one was: it tells this one from those of the same shape.
     pub made: u64,
     /// Their attributes that are not drawn.
     pub left_out: Option<MeshVertexAttribute>,
@@ -138,22 +138,22 @@ pub(super) fn cloth_from_mesh(
 /// Why a cloth that waits for its meshes is made.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Waiting {
-    /// Whether it is made whatever is found.
+    /// True if it is made whatever is found.
     asked: bool,
-    /// Whether meshes that it was made of are not what they were.
+    /// True if meshes that it was made of have changed.
     other_assets: bool,
-    /// Whether what was found was wrong: it is looked at again when a mesh asset, or what it is made of, changes.
+    /// True if the meshes were wrong: they are checked again when a mesh asset, or the cloth's list of meshes, changes.
     failed: bool,
 }
 
 impl ClothMeshSource {
-    /// Whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
+    /// Returns whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
     fn is_part_of(&self, other: &Self) -> bool {
         let mut all = self.parts.iter();
         all.all(|part| other.parts.iter().any(|other| part.is_same(other)))
     }
 
-    /// Whether a cloth of these meshes has the particles that one of those has.
+    /// Returns whether a cloth of these meshes has the same particles as one of those.
     fn has_same_particles(&self, other: &Self) -> bool {
         let mut pairs = self.parts.iter().zip(&other.parts);
         self.weld_distance == other.weld_distance
@@ -199,7 +199,7 @@ fn set_skins_aside(
     }
 }
 
-/// What a cloth is made of.
+/// Parts of a cloth from meshes.
 struct Made {
     cloth: Cloth,
     source: ClothMeshSource,

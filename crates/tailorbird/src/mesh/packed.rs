@@ -2,7 +2,7 @@
 
 use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues, VertexFormat};
 
-/// Where a vertex was in the frame before, in the space of its mesh \[m\].
+/// Position of a vertex in the frame before, in the space of its mesh \[m\].
 pub const ATTRIBUTE_PREVIOUS_POSITION: MeshVertexAttribute = MeshVertexAttribute::new(
     "Vertex_Cloth_Previous_Position",
     0x7a11_0b1d_c107_0002,

@@ -296,7 +296,7 @@ impl ClothMotionTargets {
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothMotionState {
-    /// How far particles may get from their targets.
+    /// Largest distances of particles from their targets.
     #[reflect(ignore)]
     pub(crate) limits: MotionLimits,
     /// Particles whose largest distance is 0.
@@ -310,7 +310,7 @@ pub struct ClothMotionState {
     /// Identity of the targets that they were aimed at.
     aimed: [u64; 3],
     hops: ClothHopDetector,
-    /// Whether a step was left out.
+    /// True if a step was left out.
     idle: bool,
     /// Revision of the topology.
     revision: u64,

@@ -126,7 +126,7 @@ impl Unseen {
     }
 }
 
-/// Whether a cloth is at rest or asleep. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and
+/// State of rest or sleep of a cloth. Written by [`rest_unseen`], [`wake_cloths`], [`settle_cloths`] and
 /// [`rest_cloths`] alone, and by [`ClothSleepState::wake`].
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
