@@ -15,7 +15,7 @@ use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use tailorbird_cloth::prelude::*;
 
 use super::{
-    ClothFabric, ClothLook,
+    ClothLook,
     mipmaps::{Texels, with_mipmaps},
 };
 

@@ -84,49 +84,64 @@ impl Default for ClothFabric {
 
 impl ClothFabric {
     /// [`ClothMaterial::silk`]: a satin that shines.
-    pub const SILK: Self = Self {
-        roughness: 0.5,
-        reflectance: 0.4,
-        transmission: 0.3,
-        tile: 0.06,
-        ..Self::plain("silk", ClothMaterial::silk())
-    };
+    pub const SILK: Self = Self::preset(
+        "silk",
+        ClothMaterial::silk(),
+        Color::WHITE,
+        [0.5, 0.4, 0.3],
+        0.06,
+    );
     /// [`ClothMaterial::cotton`]: plain weave.
-    pub const COTTON: Self = Self {
-        transmission: 0.2,
-        ..Self::plain("cotton", ClothMaterial::cotton())
-    };
+    pub const COTTON: Self = Self::preset(
+        "cotton",
+        ClothMaterial::cotton(),
+        Color::WHITE,
+        [1.0, 0.3, 0.2],
+        0.1,
+    );
     /// [`ClothMaterial::denim`]: blue twill.
-    pub const DENIM: Self = Self {
-        color: Color::srgb(0.16, 0.23, 0.38),
-        reflectance: 0.25,
-        ..Self::plain("denim", ClothMaterial::denim())
-    };
+    pub const DENIM: Self = Self::preset(
+        "denim",
+        ClothMaterial::denim(),
+        Color::srgb(0.16, 0.23, 0.38),
+        [1.0, 0.25, 0.0],
+        0.1,
+    );
     /// [`ClothMaterial::canvas`]: plain weave of thick yarns.
-    pub const CANVAS: Self = Self {
-        transmission: 0.08,
-        ..Self::plain("canvas", ClothMaterial::canvas())
-    };
+    pub const CANVAS: Self = Self::preset(
+        "canvas",
+        ClothMaterial::canvas(),
+        Color::WHITE,
+        [1.0, 0.3, 0.08],
+        0.1,
+    );
     /// [`ClothMaterial::leather`]: grained.
-    pub const LEATHER: Self = Self {
-        color: Color::srgb(0.38, 0.24, 0.15),
-        roughness: 0.55,
-        reflectance: 0.5,
-        ..Self::plain("leather", ClothMaterial::leather())
-    };
+    pub const LEATHER: Self = Self::preset(
+        "leather",
+        ClothMaterial::leather(),
+        Color::srgb(0.38, 0.24, 0.15),
+        [0.55, 0.5, 0.0],
+        0.1,
+    );
     /// [`ClothMaterial::rubber`]: dull black.
-    pub const RUBBER: Self = Self {
-        color: Color::srgb(0.19, 0.19, 0.19),
-        roughness: 0.7,
-        reflectance: 0.5,
-        ..Self::plain("rubber", ClothMaterial::rubber())
-    };
+    pub const RUBBER: Self = Self::preset(
+        "rubber",
+        ClothMaterial::rubber(),
+        Color::srgb(0.19, 0.19, 0.19),
+        [0.7, 0.5, 0.0],
+        0.1,
+    );
     /// [`ClothMaterial::lace`]: flowers on a net, with holes.
-    pub const LACE: Self = Self {
-        transmission: 0.35,
-        has_holes: true,
-        tile: 0.25,
-        ..Self::plain("lace", ClothMaterial::lace())
+    pub const LACE: Self = {
+        let mut lace = Self::preset(
+            "lace",
+            ClothMaterial::lace(),
+            Color::WHITE,
+            [1.0, 0.3, 0.35],
+            0.25,
+        );
+        lace.has_holes = true;
+        lace
     };
 
     /// The presets.
@@ -140,17 +155,23 @@ impl ClothFabric {
         Self::LACE,
     ];
 
-    /// Rough, white, opaque.
-    const fn plain(name: &'static str, material: ClothMaterial) -> Self {
+    /// A preset; `light` is roughness, reflectance and transmission.
+    const fn preset(
+        name: &'static str,
+        material: ClothMaterial,
+        color: Color,
+        light: [f32; 3],
+        tile: f32,
+    ) -> Self {
         Self {
             name: Cow::Borrowed(name),
             material,
-            color: Color::WHITE,
-            roughness: 1.0,
-            reflectance: 0.3,
-            transmission: 0.0,
+            color,
+            roughness: light[0],
+            reflectance: light[1],
+            transmission: light[2],
             has_holes: false,
-            tile: 0.1,
+            tile,
         }
     }
 
