@@ -2,8 +2,7 @@
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 /// How far the free end hangs below the clamp, by the length, where `weight` = σ g L³/B. Runge–Kutta, and the curvature at the
 /// clamp by bisection.

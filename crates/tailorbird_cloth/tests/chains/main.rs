@@ -13,7 +13,6 @@ mod irregular;
 mod locking;
 mod memory;
 mod meshes;
-mod scene;
 mod stretch;
 
 #[path = "../../../tailorbird_solver/src/topology/test_meshes.rs"]
