@@ -1,4 +1,4 @@
-use proptest::prelude::*;
+use crate::properties::*;
 use bevy_math::Vec3;
 
 use super::*;

@@ -1,8 +1,8 @@
 //! What is squeezed and strained of a sheet, and what is done about it.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec2, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, vector};
 use crate::{

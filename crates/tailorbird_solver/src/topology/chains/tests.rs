@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use proptest::prelude::*;
+use crate::properties::*;
 
 use super::*;
 use crate::topology::{

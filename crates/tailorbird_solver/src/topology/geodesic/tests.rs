@@ -4,7 +4,7 @@ mod curved;
 mod sheet;
 
 use super::*;
-use proptest::prelude::*;
+use crate::properties::*;
 use bevy_math::Vec2;
 use sheet::{Sheet, Split};
 
