@@ -23,7 +23,7 @@ fn main() {
     App::new()
         .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
         .insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)))
-        .insert_resource(Wind::steady(Vec3::new(1.5, 0.0, 0.5)))
+        .insert_resource(ClothWind::steady(Vec3::new(1.5, 0.0, 0.5)))
         .add_systems(Startup, setup)
         // Once a frame, as Bevy animates bones.
         .add_systems(Update, (wave, hold_or_let_go))
@@ -49,8 +49,8 @@ fn hold_or_let_go(
             // Along the stick, which is the bone's y axis.
             let row = SIZE.y / (RESOLUTION.y - 1) as f32;
             let points = (0..RESOLUTION.y).map(|k| Vec3::Y * (0.8 - row * k as f32));
-            let edge = ClothAttachment::edge(GridEdge::Left).with_points(points);
-            commands.spawn((edge.to(bone), AttachmentOf(*flag)));
+            let edge = ClothAttachment::edge(ClothEdge::Left).with_points(points);
+            commands.spawn((edge.to(bone), ClothAttachmentOf(*flag)));
         }
     }
 }
@@ -76,7 +76,7 @@ fn setup(
     commands.spawn((
         Cloth::grid(SIZE, RESOLUTION),
         ClothMaterial::silk(),
-        ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.85, 0.62, 0.10)),
+        ClothLook::new(ClothFabric::SILK).with_dye(Color::srgb(0.85, 0.62, 0.10)),
         Transform::from_xyz(0.0, 2.9, 0.0),
     ));
 

@@ -16,17 +16,17 @@ fn main() {
     App::new()
         .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
         .insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)))
-        .insert_resource(Wind {
-            gusts: Gusts {
+        .insert_resource(ClothWind {
+            gusts: ClothGusts {
                 strength: 0.5,
                 period: 2.5,
             },
-            turbulence: Turbulence {
+            turbulence: ClothTurbulence {
                 speed: 0.7,
                 scale: 0.9,
                 ..default()
             },
-            ..Wind::steady(WIND)
+            ..ClothWind::steady(WIND)
         })
         .add_systems(Startup, setup)
         .add_systems(Update, change_wind)
@@ -80,7 +80,7 @@ fn setup(
         Cloth::grid(Vec2::new(1.2, 1.5), UVec2::new(columns, 51)).with_origin(Vec2::new(0.5, 0.0)),
         ClothPins::particles((0..=8).map(|ring| ring * (columns - 1) / 8)),
         ClothMaterial::cotton(),
-        ClothLook::new(Fabric::Cotton).with_dye(Color::srgb(0.75, 0.12, 0.08)),
+        ClothLook::new(ClothFabric::COTTON).with_dye(Color::srgb(0.75, 0.12, 0.08)),
         Transform::from_xyz(0.0, 2.29, 0.03),
         ChildOf(boat),
     ));
@@ -123,7 +123,7 @@ fn sail(time: Res<Time>, step: Res<Time<Fixed>>, mut boat: Single<&mut Transform
     **boat = Transform::from_xyz(0.0, 0.08 * (1.7 * t).sin(), 0.0).with_rotation(roll * pitch);
 }
 
-fn change_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<Wind>) {
+fn change_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<ClothWind>) {
     if keys.just_pressed(KeyCode::Space) {
         wind.velocity = WIND - wind.velocity;
     }

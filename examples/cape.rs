@@ -65,7 +65,7 @@ fn setup(
         Cloth::grid(Vec2::new(1.0, 1.15), UVec2::new(49, 57)).with_origin(Vec2::new(0.5, 0.0)),
         // Heavier than it looks, so that it streams less.
         ClothMaterial::denim(),
-        ClothLook::new(Fabric::Cotton).with_dye(Color::srgb(0.50, 0.05, 0.10)),
+        ClothLook::new(ClothFabric::COTTON).with_dye(Color::srgb(0.50, 0.05, 0.10)),
         // How much is felt of the motion of the cloth's own entity: so it is a child of the figure.
         ClothInertia {
             linear: 0.4,

@@ -28,16 +28,16 @@ fn spawn_sheet(mut commands: Commands) {
     let (side, height) = CORNERS;
     let held = |corner, x: f32, y: f32| ClothPin {
         target: Some(side * Vec3::new(x, y, 0.0)),
-        ..ClothPin::new(PinSelection::Corner(corner))
+        ..ClothPin::new(ClothSelection::Corner(corner))
     };
     commands.spawn((
         Cloth::grid(Vec2::splat(2.4), UVec2::splat(65)).centered(),
         ClothPins::default()
-            .with(held(GridCorner::TopLeft, -1.0, 1.0))
-            .with(held(GridCorner::TopRight, 1.0, 1.0))
-            .with(held(GridCorner::BottomLeft, -1.0, -1.0))
-            .with(held(GridCorner::BottomRight, 1.0, -1.0)),
-        Fabric::Denim.bundle(),
+            .with(held(ClothCorner::TopLeft, -1.0, 1.0))
+            .with(held(ClothCorner::TopRight, 1.0, 1.0))
+            .with(held(ClothCorner::BottomLeft, -1.0, -1.0))
+            .with(held(ClothCorner::BottomRight, 1.0, -1.0)),
+        ClothFabric::DENIM.bundle(),
         Transform::from_xyz(0.0, height, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2)),
     ));
 }

@@ -9,17 +9,17 @@ fn main() {
     App::new()
         .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
         .insert_resource(ClearColor(Color::srgb(0.55, 0.70, 0.85)))
-        .insert_resource(Wind {
-            gusts: Gusts {
+        .insert_resource(ClothWind {
+            gusts: ClothGusts {
                 strength: 0.4,
                 period: 3.0,
             },
-            turbulence: Turbulence {
+            turbulence: ClothTurbulence {
                 speed: 1.2,
                 scale: 1.5,
                 seed: 1,
             },
-            ..Wind::steady(Vec3::new(7.0, 0.0, 1.0))
+            ..ClothWind::steady(Vec3::new(7.0, 0.0, 1.0))
         })
         .add_systems(Startup, setup)
         .add_systems(Update, change_wind)
@@ -33,9 +33,9 @@ fn setup(
 ) {
     commands.spawn((
         Cloth::grid(Vec2::new(1.8, 1.2), UVec2::new(73, 49)),
-        ClothPins::edges([GridEdge::Left]),
+        ClothPins::edges([ClothEdge::Left]),
         ClothMaterial::silk(),
-        ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.93, 0.50, 0.10)),
+        ClothLook::new(ClothFabric::SILK).with_dye(Color::srgb(0.93, 0.50, 0.10)),
         Transform::from_xyz(0.03, 2.5, 0.0),
     ));
     commands.spawn((
@@ -61,7 +61,7 @@ fn setup(
     ));
 }
 
-fn change_wind(keys: Res<ButtonInput<KeyCode>>, time: Res<Time>, mut wind: ResMut<Wind>) {
+fn change_wind(keys: Res<ButtonInput<KeyCode>>, time: Res<Time>, mut wind: ResMut<ClothWind>) {
     let axis = |more, less| f32::from(keys.pressed(more)) - f32::from(keys.pressed(less));
     let stronger = axis(KeyCode::KeyW, KeyCode::KeyS) * time.delta_secs();
     let turn = axis(KeyCode::KeyA, KeyCode::KeyD) * time.delta_secs();

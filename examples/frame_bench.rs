@@ -152,7 +152,7 @@ fn app([count, size]: [u32; 2], away: bool) -> App {
     app.add_plugins((plugins, ClothPlugins::default()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(fixed.timestep()))
         .insert_resource(fixed)
-        .insert_resource(Wind::steady(Vec3::new(2.0, 0.0, 5.0)))
+        .insert_resource(ClothWind::steady(Vec3::new(2.0, 0.0, 5.0)))
         .insert_resource(Meshes::Slab)
         .insert_resource(ClothMeshSettings {
             unseen: ClothUnseen::Write,
@@ -212,7 +212,7 @@ fn app([count, size]: [u32; 2], away: bool) -> App {
         let place = UVec2::new(k % columns, k / columns).as_vec2() - 0.5 * columns as f32;
         world.spawn((
             Cloth::grid(Vec2::ONE, UVec2::splat(size)).centered(),
-            ClothPins::edges([GridEdge::Left]),
+            ClothPins::edges([ClothEdge::Left]),
             ClothSleep::never(),
             MeshMaterial3d(material.clone()),
             Transform::from_translation((1.2 * place).extend(0.0)),

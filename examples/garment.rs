@@ -45,7 +45,7 @@ fn setup(
     commands.spawn((
         WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("garments/skirt.gltf"))),
         // Waits until the meshes are loaded. Names of nodes would choose some of them.
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
         ClothMaterial::cotton(),
         ChildOf(figure),
     ));

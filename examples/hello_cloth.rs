@@ -11,7 +11,7 @@ fn main() {
             DefaultPlugins,
             ClothPlugins::default(),
             // For toys: drags cloth with the mouse and pins it by P; moves balls by the arrow keys.
-            (ClothDragPlugin, SphereControlsPlugin),
+            (ClothDragPlugin, ClothSphereControlsPlugin),
         ))
         .add_systems(Startup, setup)
         .run();
@@ -26,14 +26,14 @@ fn setup(
     commands.spawn((
         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)).centered(),
         ClothMaterial::cotton(),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.1, 0.1))),
         Transform::from_xyz(0.0, 1.2, 0.0),
     ));
     // A ball that leans on it: arrows, PageUp and PageDown move it.
     commands.spawn((
         ClothCollider::sphere(0.3),
-        SphereControls::default(),
+        ClothSphereControls::default(),
         Mesh3d(meshes.add(Sphere::new(0.3))),
         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.8, 0.8))),
         Transform::from_xyz(0.2, 0.95, 0.1),

@@ -49,7 +49,7 @@ fn setup(
             },
             ClothLayers::new(layer, layer),
             ClothMaterial::cotton(),
-            ClothLook::new(Fabric::Cotton).with_dye(color),
+            ClothLook::new(ClothFabric::COTTON).with_dye(color),
             Transform::from_xyz(0.0, 1.7, 0.5 * side),
         ));
         commands.spawn((

@@ -50,8 +50,9 @@ fn skirt() -> Cloth {
 fn limits(skirt: &Cloth) -> ClothMotionConstraints {
     let rest = skirt.rest_positions().into_iter();
     let down: Vec<_> = rest.map(|place| -place.y / SKIRT.2).collect();
-    let behind = PerParticle::weighted(down.iter().copied(), 0.04);
-    ClothMotionConstraints::within(PerParticle::weighted(down, 0.15)).with_backstop(behind, 0.4)
+    let behind = ClothPerParticle::weighted(down.iter().copied(), 0.04);
+    ClothMotionConstraints::at_most(ClothPerParticle::weighted(down, 0.15))
+        .with_backstop(behind, 0.4)
 }
 
 fn setup(

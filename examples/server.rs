@@ -15,12 +15,12 @@ fn main() {
             MinimalPlugins.set(ScheduleRunnerPlugin::run_loop(ticks)),
             ClothPlugin::default(),
         ))
-        .insert_resource(Wind {
-            gusts: Gusts {
+        .insert_resource(ClothWind {
+            gusts: ClothGusts {
                 strength: 0.6,
                 period: 4.0,
             },
-            ..Wind::steady(Vec3::new(0.0, 0.0, 6.0))
+            ..ClothWind::steady(Vec3::new(0.0, 0.0, 6.0))
         })
         .add_systems(Startup, hoist)
         .add_systems(Update, tell.run_if(on_timer(Duration::from_secs(1))))
@@ -32,16 +32,16 @@ fn hoist(mut commands: Commands) {
     let half = 1.8;
     let held = |corner, x: f32, y: f32| ClothPin {
         target: Some(half * Vec3::new(x, y, 0.0)),
-        ..ClothPin::new(PinSelection::Corner(corner))
+        ..ClothPin::new(ClothSelection::Corner(corner))
     };
     commands.spawn((
         Cloth::grid(Vec2::splat(4.0), UVec2::splat(41)).centered(),
         ClothMaterial::canvas(),
         ClothPins::default()
-            .with(held(GridCorner::TopLeft, -1.0, 1.0))
-            .with(held(GridCorner::TopRight, 1.0, 1.0))
-            .with(held(GridCorner::BottomLeft, -1.0, -1.0))
-            .with(held(GridCorner::BottomRight, 1.0, -1.0)),
+            .with(held(ClothCorner::TopLeft, -1.0, 1.0))
+            .with(held(ClothCorner::TopRight, 1.0, 1.0))
+            .with(held(ClothCorner::BottomLeft, -1.0, -1.0))
+            .with(held(ClothCorner::BottomRight, 1.0, -1.0)),
         // Measured where it is asked for.
         ClothPinForces::default(),
         Transform::from_xyz(0.0, 5.0, 0.0),
@@ -50,7 +50,7 @@ fn hoist(mut commands: Commands) {
 
 fn tell(
     time: Res<Time>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     step: Res<ClothStepTime>,
     sail: Single<(&ClothParticles, &ClothFrame, &ClothPinForces)>,
 ) {

@@ -1,4 +1,4 @@
-//! Strips of silk that hang from a beam, and a fan that goes to and fro in front of them: a `WindZone` is a child of the fan, and
+//! Strips of silk that hang from a beam, and a fan that goes to and fro in front of them: a `ClothWindZone` is a child of the fan, and
 //! moves the air in a box before it. Nothing else moves.
 //!
 //! Space: show the zone and its air. Drag the strips with the left mouse button.
@@ -33,9 +33,9 @@ fn setup(
         let hue = 360.0 * k as f32 / strips as f32;
         commands.spawn((
             Cloth::grid(Vec2::new(0.16, 1.5), UVec2::new(7, 57)).with_origin(Vec2::new(0.5, 0.0)),
-            ClothPins::edges([GridEdge::Top]),
+            ClothPins::edges([ClothEdge::Top]),
             ClothMaterial::silk(),
-            ClothLook::new(Fabric::Silk).with_dye(Color::hsl(hue, 0.6, 0.5)),
+            ClothLook::new(ClothFabric::SILK).with_dye(Color::hsl(hue, 0.6, 0.5)),
             Transform::from_xyz(apart * (k as f32 - 0.5 * (strips - 1) as f32), height, 0.0),
         ));
     }
@@ -47,15 +47,15 @@ fn setup(
 
     let fan = commands.spawn(Fan).id();
     commands.spawn((
-        WindZone {
+        ClothWindZone {
             // The air rises from nothing at the border to its full speed so far inside.
             falloff: 0.2,
-            turbulence: Turbulence {
+            turbulence: ClothTurbulence {
                 speed: 0.8,
                 scale: 0.4,
                 ..default()
             },
-            ..WindZone::cuboid(Vec3::new(0.4, 0.4, 1.2), 5.0 * Vec3::NEG_Z)
+            ..ClothWindZone::cuboid(Vec3::new(0.8, 0.8, 2.4), 5.0 * Vec3::NEG_Z)
         },
         Transform::from_xyz(0.0, 0.0, -1.2),
         ChildOf(fan),

@@ -136,8 +136,8 @@ impl Actor {
                     .iter_mut(world)
                     .for_each(|mut camera| camera.zoom(notches));
             }
-            Action::Wind(velocity) => set(world, |s| s.wind.velocity = velocity),
-            Action::Gusts(strength) => set(world, |s| s.wind.gusts.strength = strength),
+            Action::ClothWind(velocity) => set(world, |s| s.wind.velocity = velocity),
+            Action::ClothGusts(strength) => set(world, |s| s.wind.gusts.strength = strength),
             Action::Preset(name) => set(world, |s| s.choose_preset(&name)),
             Action::Look { name, shown } => set(world, |s| s.look.set(&name, shown)),
         }

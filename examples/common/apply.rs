@@ -149,14 +149,17 @@ fn apply_cloth(
 fn apply_sphere(
     settings: Res<DemoSettings>,
     mut assets: SceneAssets,
-    mut spheres: Query<(&mut ClothCollider, &mut SphereControls, &mut Mesh3d), With<SceneSphere>>,
+    mut spheres: Query<
+        (&mut ClothCollider, &mut ClothSphereControls, &mut Mesh3d),
+        With<SceneSphere>,
+    >,
 ) {
     let radius = settings.sphere_radius;
     for (mut collider, mut controls, mut mesh) in &mut spheres {
         if collider.set_if_neq(ClothCollider::sphere(radius)) {
             *mesh = assets.sphere(radius);
         }
-        controls.set_if_neq(SphereControls {
+        controls.set_if_neq(ClothSphereControls {
             speed: settings.sphere_speed,
             fast_speed: 3.0 * settings.sphere_speed,
             ..default()
@@ -167,7 +170,7 @@ fn apply_sphere(
 fn apply_solver(
     settings: Res<DemoSettings>,
     mut solver: ResMut<ClothSettings>,
-    mut wind: ResMut<Wind>,
+    mut wind: ResMut<ClothWind>,
     mut steps: Local<u32>,
 ) {
     wind.set_if_neq(settings.wind.clone());
@@ -285,7 +288,7 @@ fn apply_lens(
 /// The keys do not push the ball into the ground.
 fn keep_above_ground(mut spheres: Query<(&ClothCollider, &mut Transform), With<SceneSphere>>) {
     for (collider, mut transform) in &mut spheres {
-        if let ColliderShape::Sphere { radius } = collider.shape
+        if let ClothColliderShape::Sphere { radius } = collider.shape
             && transform.translation.y < radius
         {
             transform.translation.y = radius;

@@ -89,7 +89,7 @@ pub struct ClothFigures {
     /// Its particles.
     pub particles: usize,
     /// How far it is stretched [-].
-    pub stretch: Stretch,
+    pub stretch: ClothStretch,
 }
 
 /// What the cloths of the scene do, the first one first.

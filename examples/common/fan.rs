@@ -22,20 +22,20 @@ const SPEED: f32 = 5.0;
 const SWEEP: f32 = 7.0;
 
 /// What the fan moves: a box of air before it, along its z axis.
-fn draught() -> WindZone {
-    let half_size = Vec3::new(0.34, 0.34, 0.5 * REACH);
-    WindZone {
+fn draught() -> ClothWindZone {
+    let size = Vec3::new(0.68, 0.68, REACH);
+    ClothWindZone {
         falloff: 0.22,
-        gusts: Gusts {
+        gusts: ClothGusts {
             strength: 0.15,
             period: 0.8,
         },
-        turbulence: Turbulence {
+        turbulence: ClothTurbulence {
             speed: 0.8,
             scale: 0.4,
             seed: 3,
         },
-        ..WindZone::cuboid(half_size, SPEED * Vec3::Z)
+        ..ClothWindZone::cuboid(size, SPEED * Vec3::Z)
     }
 }
 

@@ -103,7 +103,12 @@ fn push_spheres(
     pads: Query<&Gamepad>,
     time: Res<Time>,
     cameras: Query<&OrbitCamera>,
-    mut things: Query<(Entity, &SphereControls, &mut Transform, Option<&mut Pushed>)>,
+    mut things: Query<(
+        Entity,
+        &ClothSphereControls,
+        &mut Transform,
+        Option<&mut Pushed>,
+    )>,
 ) {
     let stick: Vec2 = pads.iter().map(Gamepad::left_stick).sum();
     let stick = stick.clamp_length_max(1.0);

@@ -89,7 +89,7 @@ pub fn spawn(commands: &mut Commands, settings: &DemoSettings, assets: &mut Scen
             size: SceneKind::Garment.size(),
         },
         assets.gltf("garments/skirt.gltf"),
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
         settings.material,
         settings.solver,
         settings.shading,
@@ -98,7 +98,7 @@ pub fn spawn(commands: &mut Commands, settings: &DemoSettings, assets: &mut Scen
         .spawn((
             Name::new("figure"),
             SceneEntity,
-            SphereControls::default(),
+            ClothSphereControls::default(),
             Transform::default(),
             Visibility::default(),
         ))

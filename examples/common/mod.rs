@@ -47,5 +47,5 @@ pub fn cloth_plugins() -> PluginGroupBuilder {
     ClothPlugins::default()
         .set(ClothFabricPlugin::from_folder("textures"))
         .add(ClothDragPlugin)
-        .add(SphereControlsPlugin)
+        .add(ClothSphereControlsPlugin)
 }

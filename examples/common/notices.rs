@@ -109,7 +109,11 @@ fn report_cloth(error: On<ClothError>, names: Query<&Name>, mut notices: ResMut<
     }
 }
 
-fn report_resources(settings: Res<ClothSettings>, wind: Res<Wind>, mut notices: ResMut<Notices>) {
+fn report_resources(
+    settings: Res<ClothSettings>,
+    wind: Res<ClothWind>,
+    mut notices: ResMut<Notices>,
+) {
     let solver = settings.is_changed().then(|| settings.errors());
     let air = wind.is_changed().then(|| wind.errors());
     for error in solver.into_iter().chain(air).flatten() {

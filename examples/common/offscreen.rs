@@ -23,7 +23,7 @@ use bevy::{
     winit::WinitPlugin,
 };
 use image::RgbImage;
-use tailorbird::fabric::FabricLibrary;
+use tailorbird::fabric::ClothFabricLibrary;
 
 use super::{
     actor::Actor, apply::DemoPlugin, garment, graphics::check_driver, script::Script,
@@ -160,7 +160,12 @@ impl Offscreen {
             offscreen.update(1.0 / 60.0, true);
         }
         for _ in 0..1000 {
-            if offscreen.app.world().resource::<FabricLibrary>().is_ready() {
+            if offscreen
+                .app
+                .world()
+                .resource::<ClothFabricLibrary>()
+                .is_ready()
+            {
                 break;
             }
             thread::sleep(Duration::from_millis(10));

@@ -165,8 +165,12 @@ fn air(ui: &mut Ui, settings: &mut DemoSettings) {
     ui.add(Slider::new(&mut swirls.speed, 0.0..=5.0).text("turbulence [m/s]"));
     ui.add(Slider::new(&mut swirls.scale, 0.2..=5.0).text("largest eddies [m]"));
     ui.horizontal(|ui| {
-        ui.radio_value(&mut wind.model, WindModel::Aerodynamic, "drag and lift");
-        ui.radio_value(&mut wind.model, WindModel::Classic, "classic");
+        ui.radio_value(
+            &mut wind.model,
+            ClothWindModel::Aerodynamic,
+            "drag and lift",
+        );
+        ui.radio_value(&mut wind.model, ClothWindModel::Classic, "classic");
     });
 }
 
@@ -191,8 +195,8 @@ fn solver(ui: &mut Ui, settings: &mut DemoSettings, substeps_now: u32) {
 
 fn material(ui: &mut Ui, settings: &mut DemoSettings) {
     ui.horizontal_wrapped(|ui| {
-        for fabric in Fabric::ALL {
-            let name = fabric.name();
+        for fabric in ClothFabric::ALL {
+            let name = &*fabric.name;
             // A click on the one that is chosen takes its values back.
             if ui.selectable_label(settings.preset == name, name).clicked() {
                 settings.choose_preset(name);

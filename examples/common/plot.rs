@@ -64,7 +64,7 @@ fn solvers(ui: &mut egui::Ui, beside: bool, status: &Status) {
             ui.end_row();
             for (cloth, time) in status.cloths.iter().zip(times) {
                 ui.label(solver_name(cloth.solver));
-                let Stretch { mean, p99, max } = cloth.stretch;
+                let ClothStretch { mean, p99, max } = cloth.stretch;
                 for part in [mean, p99, max] {
                     ui.label(percent(part));
                 }
@@ -85,7 +85,7 @@ pub fn beside(context: &egui::Context, status: &Status) {
         .interactable(false)
         .show(context, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.label("Stretch and time, from left to right");
+                ui.label("ClothStretch and time, from left to right");
                 solvers(ui, true, status);
             });
         });

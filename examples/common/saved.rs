@@ -76,7 +76,7 @@ pub struct SavedMaterial {
     pub lift: f32,
 }
 
-/// [`Wind`] in a file.
+/// [`ClothWind`] in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedWind {
@@ -92,7 +92,7 @@ pub struct SavedWind {
     pub air_density: f32,
 }
 
-/// [`Gusts`] in a file.
+/// [`ClothGusts`] in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedGusts {
@@ -102,7 +102,7 @@ pub struct SavedGusts {
     pub period: f32,
 }
 
-/// [`Turbulence`] in a file.
+/// [`ClothTurbulence`] in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedTurbulence {
@@ -156,7 +156,7 @@ macro_rules! mirror {
 mirror!(SavedShading of ClothShading { Smooth, Flat });
 mirror!(SavedSolver of ClothSolver { Chains, GaussSeidel });
 mirror!(SavedPicking of ClothPickingBackend { Ray, Depth });
-mirror!(SavedWindModel of WindModel { Aerodynamic, Classic });
+mirror!(SavedWindModel of ClothWindModel { Aerodynamic, Classic });
 
 /// The same fields in both, each of a type that has a way to the other's.
 macro_rules! same_fields {
@@ -179,9 +179,9 @@ same_fields!(SavedMaterial and ClothMaterial {
     areal_density, warp_compliance, weft_compliance, shear_compliance, bend_compliance, viscosity, damping, friction,
     thickness, drag, lift
 });
-same_fields!(SavedGusts and Gusts { strength, period });
-same_fields!(SavedTurbulence and Turbulence { speed, scale, seed });
-same_fields!(SavedWind and Wind { velocity, gusts, turbulence, model, air_density });
+same_fields!(SavedGusts and ClothGusts { strength, period });
+same_fields!(SavedTurbulence and ClothTurbulence { speed, scale, seed });
+same_fields!(SavedWind and ClothWind { velocity, gusts, turbulence, model, air_density });
 
 /// A value that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -371,7 +371,7 @@ impl SavedSettings {
             settings.wind = wind.into();
         }
         match settings.wind.errors().first() {
-            Some(kind) => Err(NotAllowed::of_plugin(kind, "Wind", "wind")),
+            Some(kind) => Err(NotAllowed::of_plugin(kind, "ClothWind", "wind")),
             None => Ok(()),
         }
     }

@@ -87,46 +87,46 @@ impl SceneKind {
     }
 
     /// The wind that it starts with.
-    pub fn wind(self) -> Wind {
+    pub fn wind(self) -> ClothWind {
         match self {
-            Self::Flag => Wind {
-                gusts: Gusts {
+            Self::Flag => ClothWind {
+                gusts: ClothGusts {
                     strength: 0.4,
                     period: 3.0,
                 },
-                turbulence: Turbulence {
+                turbulence: ClothTurbulence {
                     speed: 1.2,
                     scale: 1.5,
                     seed: 1,
                 },
-                ..Wind::steady(Vec3::new(7.0, 0.0, 1.0))
+                ..ClothWind::steady(Vec3::new(7.0, 0.0, 1.0))
             },
             // A breath of air, as through an open window.
-            Self::Curtain => Wind {
-                gusts: Gusts {
+            Self::Curtain => ClothWind {
+                gusts: ClothGusts {
                     strength: 0.9,
                     period: 2.5,
                 },
-                ..Wind::steady(Vec3::new(0.2, 0.0, 0.9))
+                ..ClothWind::steady(Vec3::new(0.2, 0.0, 0.9))
             },
-            Self::Banner => Wind {
-                gusts: Gusts {
+            Self::Banner => ClothWind {
+                gusts: ClothGusts {
                     strength: 0.5,
                     period: 2.0,
                 },
-                turbulence: Turbulence {
+                turbulence: ClothTurbulence {
                     speed: 0.5,
                     scale: 1.2,
                     seed: 2,
                 },
-                ..Wind::steady(Vec3::new(0.7, 0.0, 1.4))
+                ..ClothWind::steady(Vec3::new(0.7, 0.0, 1.4))
             },
             Self::Tablecloth
             | Self::Ball
             | Self::Cape
             | Self::Garment
             | Self::Crates
-            | Self::Fan => Wind::default(),
+            | Self::Fan => ClothWind::default(),
         }
     }
 
@@ -225,11 +225,11 @@ impl SceneKind {
     /// What holds it, with `longer` particles along the longer side.
     pub fn pins(self, longer: u32) -> ClothPins {
         match self {
-            Self::Curtain => corners(&GridCorner::TOP, Vec3::new(0.82, 0.0, 0.0)),
-            Self::Flag => ClothPins::edges([GridEdge::Left]),
+            Self::Curtain => corners(&ClothCorner::TOP, Vec3::new(0.82, 0.0, 0.0)),
+            Self::Flag => ClothPins::edges([ClothEdge::Left]),
             Self::Tablecloth | Self::Garment => ClothPins::default(),
-            Self::Crates => corners(&GridCorner::ALL, Vec3::new(1.1, 1.1, 0.0)),
-            Self::Ball => corners(&GridCorner::ALL, Vec3::new(0.9, 0.9, 0.0)),
+            Self::Crates => corners(&ClothCorner::ALL, Vec3::new(1.1, 1.1, 0.0)),
+            Self::Ball => corners(&ClothCorner::ALL, Vec3::new(0.9, 0.9, 0.0)),
             Self::Cape => character::collar(self.size().x, self.resolution(longer).x),
             Self::Banner => props::rings(self.resolution(longer).x),
             Self::Fan => fan::pleats(self.size().x, self.resolution(longer).x),
@@ -277,17 +277,17 @@ impl FromStr for SceneKind {
 }
 
 /// Corners, each held at the same distance from the middle [m]: closer than the cloth is wide, so that it hangs in folds.
-fn corners(which: &[GridCorner], at: Vec3) -> ClothPins {
+fn corners(which: &[ClothCorner], at: Vec3) -> ClothPins {
     let pins = which.iter().map(|&corner| {
         let sign = match corner {
-            GridCorner::TopLeft => Vec3::new(-1.0, 1.0, 0.0),
-            GridCorner::TopRight => Vec3::new(1.0, 1.0, 0.0),
-            GridCorner::BottomLeft => Vec3::new(-1.0, -1.0, 0.0),
-            GridCorner::BottomRight => Vec3::new(1.0, -1.0, 0.0),
+            ClothCorner::TopLeft => Vec3::new(-1.0, 1.0, 0.0),
+            ClothCorner::TopRight => Vec3::new(1.0, 1.0, 0.0),
+            ClothCorner::BottomLeft => Vec3::new(-1.0, -1.0, 0.0),
+            ClothCorner::BottomRight => Vec3::new(1.0, -1.0, 0.0),
         };
         ClothPin {
             target: Some(at * sign),
-            ..ClothPin::new(PinSelection::Corner(corner))
+            ..ClothPin::new(ClothSelection::Corner(corner))
         }
     });
     ClothPins {
@@ -297,10 +297,10 @@ fn corners(which: &[GridCorner], at: Vec3) -> ClothPins {
 
 /// How the scene's cloth looks. What has a colour of its own is not dyed.
 pub fn look(settings: &DemoSettings) -> ClothLook {
-    let fabric = Fabric::by_name(settings.preset).unwrap_or_default();
-    let dye = match fabric {
-        Fabric::Silk | Fabric::Cotton => settings.scene.color(),
-        Fabric::Denim => Color::srgb(0.55, 0.60, 0.72),
+    let fabric = ClothFabric::by_name(settings.preset).unwrap_or_default();
+    let dye = match &*fabric.name {
+        "silk" | "cotton" => settings.scene.color(),
+        "denim" => Color::srgb(0.55, 0.60, 0.72),
         _ => Color::WHITE,
     };
     ClothLook {
@@ -365,7 +365,7 @@ fn spawn_sphere(commands: &mut Commands, settings: &DemoSettings, assets: &mut S
         SceneEntity,
         SceneSphere,
         ClothCollider::sphere(radius),
-        SphereControls::default(),
+        ClothSphereControls::default(),
         Transform::from_translation(settings.scene.sphere_position(radius)),
         assets.sphere(radius),
         assets.painted(Color::srgb(0.78, 0.76, 0.72), 0.35, 0.0),

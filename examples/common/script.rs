@@ -87,9 +87,9 @@ pub enum Action {
         seconds: f32,
     },
     /// Sets the wind [m/s].
-    Wind(Vec3),
+    ClothWind(Vec3),
     /// Sets the gusts' strength.
-    Gusts(f32),
+    ClothGusts(f32),
     /// Chooses a preset.
     Preset(String),
     /// Shows or hides something.
@@ -244,8 +244,8 @@ fn cue(at: &str, words: &[&str]) -> Result<Cue, String> {
         ["wheel", notches] => Action::Wheel(number(notches)?),
         ["key", name] => held(name, "0")?,
         ["hold", name, "for", seconds] => held(name, seconds)?,
-        ["wind", x, y, z] => Action::Wind(pair(x, y)?.extend(number(z)?)),
-        ["gusts", strength] => Action::Gusts(number(strength)?),
+        ["wind", x, y, z] => Action::ClothWind(pair(x, y)?.extend(number(z)?)),
+        ["gusts", strength] => Action::ClothGusts(number(strength)?),
         ["preset", name] => Action::Preset((*name).into()),
         ["show", name] => look(name, true),
         ["hide", name] => look(name, false),

@@ -35,7 +35,7 @@ pub struct DemoSettings {
     /// How often a single step was asked for. A change does as many steps.
     pub single_steps: u32,
     /// The air.
-    pub wind: Wind,
+    pub wind: ClothWind,
     /// Radius of the ball [m].
     pub sphere_radius: f32,
     /// How fast the keys move the ball [m/s].
@@ -125,7 +125,7 @@ impl DemoSettings {
             iterations: solver.iterations,
             paused: false,
             single_steps: 0,
-            wind: Wind::default(),
+            wind: ClothWind::default(),
             sphere_radius: 0.0,
             sphere_speed: 1.5,
             grab_radius: 0.06,

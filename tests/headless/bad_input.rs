@@ -9,7 +9,7 @@ use crate::world::*;
 fn good() -> impl Bundle {
     (
         square(6),
-        ClothPins::corners([GridCorner::TopLeft]),
+        ClothPins::corners([ClothCorner::TopLeft]),
         Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(lying()),
     )
 }
@@ -91,7 +91,7 @@ fn sizes() {
         assert!(Cloth::try_grid(size, UVec2::splat(5)).is_err());
         check(
             (cloth, far()),
-            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Size { .. })),
+            |kind| matches!(kind, ClothErrorKind::Shape(ClothShapeError::Size { .. })),
             &["Cloth grid size", &size.x.to_string(), "positive"],
             mend_cloth,
         );
@@ -110,7 +110,7 @@ fn resolutions() {
         assert!(Cloth::try_grid(Vec2::ONE, resolution).is_err());
         check(
             (Cloth::grid(Vec2::ONE, resolution), far()),
-            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Resolution { value }) if *value == resolution),
+            |kind| matches!(kind, ClothErrorKind::Shape(ClothShapeError::Resolution { value }) if *value == resolution),
             &["resolution", &resolution.x.to_string(), "2 × 2"],
             mend_cloth,
         );
@@ -121,7 +121,7 @@ fn resolutions() {
 fn origins() {
     check(
         (square(5).with_origin(Vec2::new(f32::NAN, 0.0)), far()),
-        |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::Origin { .. })),
+        |kind| matches!(kind, ClothErrorKind::Shape(ClothShapeError::Origin { .. })),
         &["origin", "NaN", "finite"],
         mend_cloth,
     );
@@ -146,7 +146,7 @@ fn positions_of_a_mesh() {
             |kind| {
                 matches!(
                     kind,
-                    ClothErrorKind::Shape(ShapeError::NonFinitePosition { vertex: 2, .. })
+                    ClothErrorKind::Shape(ClothShapeError::NonFinitePosition { vertex: 2, .. })
                 )
             },
             &["positions[2]", &value.to_string(), "finite"],
@@ -164,7 +164,7 @@ fn indices_of_a_mesh() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::Shape(ShapeError::IndexOutOfRange {
+                ClothErrorKind::Shape(ClothShapeError::IndexOutOfRange {
                     at: 5,
                     value: 4,
                     vertices: 4
@@ -179,7 +179,7 @@ fn indices_of_a_mesh() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::Shape(ShapeError::IndexCount { value: 5 })
+                ClothErrorKind::Shape(ClothShapeError::IndexCount { value: 5 })
             )
         },
         &["5", "multiple of 3"],
@@ -190,7 +190,7 @@ fn indices_of_a_mesh() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::Shape(ShapeError::NoTriangles { vertices: 4, .. })
+                ClothErrorKind::Shape(ClothShapeError::NoTriangles { vertices: 4, .. })
             )
         },
         &["triangle", "4"],
@@ -198,7 +198,12 @@ fn indices_of_a_mesh() {
     );
     check(
         with(vec![0, 0, 1, 2, 2, 2]),
-        |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::NoTriangles { .. })),
+        |kind| {
+            matches!(
+                kind,
+                ClothErrorKind::Shape(ClothShapeError::NoTriangles { .. })
+            )
+        },
         &["triangle"],
         mend_cloth,
     );
@@ -211,15 +216,38 @@ fn weld_distances() {
         let shape = ClothShape::Mesh {
             positions,
             indices,
+            uvs: Vec::new(),
             weld_distance: distance,
         };
         check(
             (Cloth { shape }, far()),
-            |kind| matches!(kind, ClothErrorKind::Shape(ShapeError::WeldDistance { .. })),
+            |kind| {
+                matches!(
+                    kind,
+                    ClothErrorKind::Shape(ClothShapeError::WeldDistance { .. })
+                )
+            },
             &["weld_distance", &distance.to_string(), "at least 0"],
             mend_cloth,
         );
     }
+}
+
+#[test]
+fn texture_coordinates_that_are_too_few() {
+    let (positions, indices) = quad();
+    let shape = ClothShape::Mesh {
+        positions,
+        indices,
+        uvs: vec![Vec2::ZERO; 3],
+        weld_distance: 0.0,
+    };
+    check(
+        (Cloth { shape }, far()),
+        |kind| matches!(kind, ClothErrorKind::Shape(ClothShapeError::UvCount { .. })),
+        &["uvs", "3", "none or one for each of 4 vertices"],
+        mend_cloth,
+    );
 }
 
 #[test]
@@ -231,7 +259,7 @@ fn broken_triangles_are_dropped_and_the_rest_simulates() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::Shape(ShapeError::DegenerateTriangles { count: 1, first: 2 })
+                ClothErrorKind::Shape(ClothShapeError::DegenerateTriangles { count: 1, first: 2 })
             )
         },
         &["1", "2", "dropped"],
@@ -248,7 +276,7 @@ fn broken_triangles_are_dropped_and_the_rest_simulates() {
         |kind| {
             matches!(
                 kind,
-                ClothErrorKind::Shape(ShapeError::DuplicateTriangles { count: 1, first: 2 })
+                ClothErrorKind::Shape(ClothShapeError::DuplicateTriangles { count: 1, first: 2 })
             )
         },
         &["1", "2", "dropped"],
@@ -281,7 +309,7 @@ fn a_material_that_becomes_wrong_never_gets_into_the_state() {
         for value in [-1.0, f32::NAN, f32::INFINITY] {
             let mut sim = Sim::new();
             sim.record::<ClothReset>();
-            sim.app.insert_resource(Wind::steady(Vec3::Z * 3.0));
+            sim.app.insert_resource(ClothWind::steady(Vec3::Z * 3.0));
             sim.spawn(good_collider());
             sim.spawn((
                 ClothCollider::half_space(),
@@ -320,7 +348,7 @@ fn materials() {
 fn a_material_that_becomes_wrong_leaves_the_masses() {
     for value in [0.0, -1.0, f32::NAN] {
         let mut sim = Sim::new();
-        let cloth = sim.spawn((square(5), ClothPins::corners(GridCorner::TOP)));
+        let cloth = sim.spawn((square(5), ClothPins::corners(ClothCorner::TOP)));
         sim.steps(5);
         sim.edit::<ClothMaterial>(cloth, |m| m.areal_density = value);
         sim.steps(5);
@@ -364,7 +392,7 @@ fn pins() {
     check(
         (
             Cloth::mesh(positions, indices),
-            ClothPins::corners([GridCorner::TopLeft]),
+            ClothPins::corners([ClothCorner::TopLeft]),
             far(),
         ),
         |kind| matches!(kind, ClothErrorKind::NotAGrid { .. }),
@@ -413,7 +441,7 @@ fn transforms_of_a_sphere() {
 #[test]
 fn a_transform_that_becomes_wrong_leaves_the_cloth_where_it_was() {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(5), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(5), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(30);
     let pinned = sim.at(cloth, 0);
     for bad in broken_transforms() {
@@ -489,7 +517,7 @@ fn a_state_that_becomes_infinite_is_reset_and_says_so() {
     sim.record::<ClothError>();
     sim.spawn(good_collider());
     let other = sim.spawn(good());
-    let cloth = sim.spawn((square(5), ClothPins::corners(GridCorner::TOP), far()));
+    let cloth = sim.spawn((square(5), ClothPins::corners(ClothCorner::TOP), far()));
     sim.steps(30);
     let before = sim.positions(cloth);
     sim.edit::<ClothForces>(cloth, |forces| {
@@ -518,13 +546,13 @@ fn a_state_that_becomes_infinite_is_reset_and_says_so() {
 fn constructors_tell_at_once() {
     assert_eq!(
         Cloth::try_grid(Vec2::ONE, UVec2::ONE),
-        Err(ShapeError::Resolution { value: UVec2::ONE })
+        Err(ClothShapeError::Resolution { value: UVec2::ONE })
     );
     let (positions, indices) = quad();
     assert!(Cloth::try_mesh(positions.clone(), indices).is_ok());
     assert_eq!(
         Cloth::try_mesh(positions, [0, 1, 9]),
-        Err(ShapeError::IndexOutOfRange {
+        Err(ClothShapeError::IndexOutOfRange {
             at: 2,
             value: 9,
             vertices: 4

@@ -32,7 +32,7 @@ fn a_band_takes_the_catenary_of_its_length() {
             let target = |x: f32| Some(Vec3::new(x, -z, 0.0));
             let pin = |particle, x| ClothPin {
                 target: target(x),
-                ..ClothPin::new(PinSelection::Particle(particle))
+                ..ClothPin::new(ClothSelection::Particle(particle))
             };
             [
                 pin(row * COLUMNS, inset),

@@ -174,7 +174,7 @@ fn what_the_plugin_reports_is_told_by_name() {
         .get_mut::<ClothMaterial>(cloth)
         .expect("a material")
         .damping = -1.0;
-    app.world_mut().resource_mut::<Wind>().air_density = f32::NAN;
+    app.world_mut().resource_mut::<ClothWind>().air_density = f32::NAN;
     frames(&mut app, 3);
     let notices = app.world().resource::<Notices>();
     let told: Vec<&str> = notices.iter().map(|notice| notice.text.as_str()).collect();
@@ -184,7 +184,7 @@ fn what_the_plugin_reports_is_told_by_name() {
         both.contains("curtain: ClothMaterial.damping is -1"),
         "{both}"
     );
-    assert!(both.contains("Wind.air_density is NaN"), "{both}");
+    assert!(both.contains("ClothWind.air_density is NaN"), "{both}");
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn keys_move_a_hand_that_drags_cloth() {
     let user_pins = |app: &App| {
         let pins = &get::<ClothPins>(app, cloth).pins;
         pins.iter()
-            .filter(|pin| pin.author == PinAuthor::User)
+            .filter(|pin| pin.author == ClothPinAuthor::User)
             .count()
     };
     assert!(user_pins(&app) > 0);

@@ -17,7 +17,7 @@ fn crowd() -> u64 {
 
 fn crowd_in(sim: Sim) -> u64 {
     let mut sim = sim.with_passes(2, 2);
-    let mut wind = Wind::steady(Vec3::new(1.0, 0.0, 5.0));
+    let mut wind = ClothWind::steady(Vec3::new(1.0, 0.0, 5.0));
     wind.gusts.strength = 0.4;
     sim.app.insert_resource(wind);
     sim.spawn((

@@ -21,7 +21,7 @@ fn grabbed(at: usize) -> (App, Entity, Entity) {
         ..default()
     });
     // A breath of air: a sheet that hangs in a perfect plane has no side to buckle to when it is pushed together.
-    app.insert_resource(Wind::steady(Vec3::new(0.0, 0.05, 0.3)));
+    app.insert_resource(ClothWind::steady(Vec3::new(0.0, 0.05, 0.3)));
     frames(&mut app, 3);
     let place = particle(&app, cloth, at);
     let place = on_screen(&app, camera, place);
@@ -245,7 +245,7 @@ fn the_hand_holds_at_few_frames_per_second() {
         let cloth = curtain(&mut app, n);
         let middle = (n * (n / 2) + n / 2) as usize;
         // A sheet in a perfect plane has no side to buckle to.
-        app.insert_resource(Wind::steady(Vec3::new(0.0, 0.05, 0.8)));
+        app.insert_resource(ClothWind::steady(Vec3::new(0.0, 0.05, 0.8)));
         frames(&mut app, 120);
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(
             250,
@@ -277,7 +277,7 @@ fn a_game_that_does_not_ask_for_it_lets_nobody_drag_pin_or_move() {
     let cloth = curtain(&mut app, N);
     let ball = (
         ClothCollider::sphere(0.1),
-        SphereControls::default(),
+        ClothSphereControls::default(),
         Transform::from_xyz(0.0, 0.0, -2.0),
     );
     let ball = app.world_mut().spawn(ball).id();

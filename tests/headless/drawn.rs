@@ -1,7 +1,7 @@
 //! Held particles are drawn where their target is drawn.
 
 use bevy::prelude::*;
-use tailorbird::{cloth::attachment::AttachedParticles, drawn::ClothDrawnHolds, prelude::*};
+use tailorbird::{cloth::attachment::ClothAttachedParticles, drawn::ClothDrawnHolds, prelude::*};
 
 use crate::world::{Sim, square};
 
@@ -17,7 +17,7 @@ fn sheet(n: u32) -> impl Bundle {
 }
 
 fn attach(sim: &mut Sim, cloth: Entity, to: Entity, attachment: ClothAttachment) {
-    sim.spawn((attachment.to(to), AttachmentOf(cloth)));
+    sim.spawn((attachment.to(to), ClothAttachmentOf(cloth)));
 }
 
 /// Where all particles are drawn, in the world, where the cloth and its targets are now.
@@ -34,7 +34,7 @@ fn drawn(
     holds.update(
         sim.get::<ClothTopology>(cloth),
         particles,
-        sim.get::<AttachedParticles>(cloth),
+        sim.get::<ClothAttachedParticles>(cloth),
         &place,
         fraction,
         |target| Some(now(target)?.into()),
@@ -48,7 +48,7 @@ fn a_pin_is_where_its_bone_is_drawn_and_the_rest_follows_smoothly() {
     let mut sim = Sim::vacuum();
     let hand = sim.spawn(Transform::default());
     let cloth = sim.spawn(sheet(33));
-    attach(&mut sim, cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    attach(&mut sim, cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     sim.steps(20);
     let moved = Transform::from_xyz(0.05, 0.1, 0.02).with_rotation(Quat::from_rotation_z(0.1));
     let place = Transform::from_xyz(0.0, 0.01, 0.0).with_rotation(Quat::from_rotation_y(0.03));
@@ -82,7 +82,7 @@ fn nothing_is_drawn_elsewhere_where_nothing_moved() {
         &mut sim,
         cloth,
         hand,
-        ClothAttachment::corner(GridCorner::TopLeft),
+        ClothAttachment::corner(ClothCorner::TopLeft),
     );
     sim.steps(30);
     let hand_at = *sim.get::<Transform>(hand);
@@ -98,8 +98,8 @@ fn nothing_is_drawn_elsewhere_where_nothing_moved() {
 fn each_of_two_targets_moves_its_own_side_and_pins_stay() {
     let mut sim = Sim::vacuum();
     let hands = [0.0, 1.0].map(|x| sim.spawn(Transform::from_xyz(x, 0.0, 0.0)));
-    let cloth = sim.spawn((sheet(17), ClothPins::corners([GridCorner::BottomLeft])));
-    for (hand, corner) in hands.into_iter().zip(GridCorner::TOP) {
+    let cloth = sim.spawn((sheet(17), ClothPins::corners([ClothCorner::BottomLeft])));
+    for (hand, corner) in hands.into_iter().zip(ClothCorner::TOP) {
         attach(&mut sim, cloth, hand, ClothAttachment::corner(corner));
     }
     sim.steps(3);
@@ -123,7 +123,7 @@ fn where_all_that_holds_it_hopped_the_whole_cloth_is_drawn_there() {
     let mut sim = Sim::vacuum();
     let hand = sim.spawn(Transform::default());
     let cloth = sim.spawn(sheet(33));
-    attach(&mut sim, cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    attach(&mut sim, cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     sim.steps(20);
     let here = Transform::default();
     let hopped = Transform::from_xyz(2.0, 0.5, 0.0).with_rotation(Quat::from_rotation_y(1.0));

@@ -48,7 +48,7 @@ fn they_are_where_their_bone_is() {
             .world_mut()
             .spawn((
                 Cloth::grid(Vec2::ONE, UVec2::splat(SIDE as u32)).with_origin(Vec2::new(0.5, 0.0)),
-                related!(ClothAttachments[ClothAttachment::edge(GridEdge::Top).to(bone)]),
+                related!(ClothAttachments[ClothAttachment::edge(ClothEdge::Top).to(bone)]),
                 pose(0.0),
             ))
             .id();

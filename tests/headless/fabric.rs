@@ -6,7 +6,7 @@ use bevy::{
     image::{CompressedImageFormats, ImageLoader},
     prelude::*,
 };
-use tailorbird::{fabric::FabricLibrary, prelude::*};
+use tailorbird::{fabric::ClothFabricLibrary, prelude::*};
 
 use crate::game::*;
 
@@ -41,7 +41,7 @@ fn material(app: &App, cloth: Entity) -> &StandardMaterial {
 fn wait(app: &mut App) {
     for _ in 0..2000 {
         app.update();
-        if app.world().resource::<FabricLibrary>().is_ready() {
+        if app.world().resource::<ClothFabricLibrary>().is_ready() {
             return;
         }
         thread::sleep(Duration::from_millis(5));
@@ -59,14 +59,14 @@ fn every_fabric_has_its_textures_with_smaller_copies() {
 
 fn every_fabric_has_textures(textures: ClothFabricPlugin, size: u32) {
     let mut app = dressed_by(textures);
-    let cloths = Fabric::ALL.map(|fabric| flag(&mut app, ClothLook::new(fabric)));
+    let cloths = ClothFabric::ALL.map(|fabric| flag(&mut app, ClothLook::new(fabric)));
     app.update();
-    assert!(!app.world().resource::<FabricLibrary>().is_ready());
+    assert!(!app.world().resource::<ClothFabricLibrary>().is_ready());
     wait(&mut app);
-    for (cloth, fabric) in cloths.into_iter().zip(Fabric::ALL) {
+    for (cloth, fabric) in cloths.into_iter().zip(ClothFabric::ALL) {
         let material = material(&app, cloth);
         let tiles = material.uv_transform.matrix2.col(0).x;
-        assert!((tiles - 0.9 / fabric.tile()).abs() < 1e-3, "{tiles} tiles");
+        assert!((tiles - 0.9 / fabric.tile).abs() < 1e-3, "{tiles} tiles");
         let textures = [
             &material.base_color_texture,
             &material.normal_map_texture,
@@ -84,16 +84,16 @@ fn every_fabric_has_textures(textures: ClothFabricPlugin, size: u32) {
             );
         }
         let sees_through = material.alpha_mode == AlphaMode::AlphaToCoverage;
-        assert_eq!(sees_through, fabric == Fabric::Lace, "{fabric:?}");
+        assert_eq!(sees_through, fabric.has_holes, "{fabric:?}");
     }
 }
 
 #[test]
 fn cloths_that_look_alike_share_a_material_and_others_do_not() {
     let mut app = dressed();
-    let red = ClothLook::new(Fabric::Silk).with_dye(Color::srgb(0.6, 0.1, 0.1));
-    let [a, b] = [(); 2].map(|()| flag(&mut app, red));
-    let c = flag(&mut app, red.with_dye(Color::WHITE));
+    let red = ClothLook::new(ClothFabric::SILK).with_dye(Color::srgb(0.6, 0.1, 0.1));
+    let [a, b] = [(); 2].map(|()| flag(&mut app, red.clone()));
+    let c = flag(&mut app, red.clone().with_dye(Color::WHITE));
     app.update();
     assert_eq!(handle(&app, a), handle(&app, b));
     assert_ne!(handle(&app, a), handle(&app, c));
@@ -102,7 +102,7 @@ fn cloths_that_look_alike_share_a_material_and_others_do_not() {
     assert_eq!(handle(&app, a), handle(&app, c));
     assert!(material(&app, a).base_color_texture.is_some());
     // One that comes when the textures are there has them at once.
-    let d = flag(&mut app, ClothLook::new(Fabric::Silk));
+    let d = flag(&mut app, ClothLook::new(ClothFabric::SILK));
     app.update();
     assert!(material(&app, d).base_color_texture.is_some());
 }
@@ -113,11 +113,11 @@ fn looks_and_physics_come_together_or_alone() {
     let shape = Cloth::grid(Vec2::ONE, UVec2::splat(5));
     let both = app
         .world_mut()
-        .spawn((shape.clone(), Fabric::Leather.bundle()));
+        .spawn((shape.clone(), ClothFabric::LEATHER.bundle()));
     let both = both.id();
     let plain = ClothLook {
         textured: false,
-        ..ClothLook::new(Fabric::Lace)
+        ..ClothLook::new(ClothFabric::LACE)
     };
     let mixed = app
         .world_mut()
@@ -136,8 +136,44 @@ fn looks_and_physics_come_together_or_alone() {
 #[test]
 fn presets_of_both_kinds_have_the_same_names() {
     for (name, physics) in ClothMaterial::presets() {
-        let fabric = Fabric::by_name(name).expect(name);
-        assert_eq!(fabric.physics(), physics);
+        let fabric = ClothFabric::by_name(name).expect(name);
+        assert_eq!(fabric.material, physics);
     }
-    assert_eq!(Fabric::ALL.len(), ClothMaterial::presets().len());
+    assert_eq!(ClothFabric::ALL.len(), ClothMaterial::presets().len());
+}
+
+#[test]
+fn a_fabric_of_ones_own_is_a_value() {
+    let mut app = dressed();
+    let velvet = ClothFabric {
+        name: "velvet".into(),
+        color: Color::srgb(0.3, 0.02, 0.06),
+        tile: 0.3,
+        ..ClothFabric::COTTON
+    };
+    let look = ClothLook {
+        textured: false,
+        ..ClothLook::new(velvet.clone())
+    };
+    let [a, b] = [0.9, 0.5].map(|roughness| {
+        let fabric = ClothFabric {
+            roughness,
+            ..velvet.clone()
+        };
+        let look = ClothLook {
+            fabric,
+            ..look.clone()
+        };
+        flag(&mut app, look)
+    });
+    let grey = flag(&mut app, look.with_dye(Color::linear_rgb(0.5, 0.5, 0.5)));
+    // Of which there are no textures: it stays plain.
+    let textured = flag(&mut app, ClothLook::new(velvet));
+    app.update();
+    assert_ne!(handle(&app, a), handle(&app, b));
+    assert_eq!(material(&app, a).perceptual_roughness, 0.9);
+    let [own, dyed] = [a, grey].map(|cloth| material(&app, cloth).base_color.to_linear());
+    assert!((dyed.red - 0.5 * own.red).abs() < 1e-6, "{dyed:?}");
+    wait(&mut app);
+    assert!(material(&app, textured).base_color_texture.is_none());
 }

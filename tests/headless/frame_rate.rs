@@ -18,7 +18,7 @@ fn note(mut history: ResMut<History>, cloth: Query<&ClothParticles>) {
 fn history(frames_per_second: f64) -> Vec<u64> {
     let mut sim = Sim::new();
     sim.app.init_resource::<History>();
-    let mut wind = Wind::steady(Vec3::new(2.0, 0.0, 6.0));
+    let mut wind = ClothWind::steady(Vec3::new(2.0, 0.0, 6.0));
     wind.gusts.strength = 0.5;
     sim.app.insert_resource(wind);
     sim.app.add_systems(FixedLast, note);
@@ -26,7 +26,7 @@ fn history(frames_per_second: f64) -> Vec<u64> {
     sim.spawn(ClothCollider::sphere(0.2));
     sim.spawn((
         square(10),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         Transform::from_xyz(0.0, 0.0, -0.3),
     ));
     sim.frames((1.5 * frames_per_second) as u32);

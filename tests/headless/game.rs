@@ -37,7 +37,7 @@ pub fn game() -> App {
 /// The same, before its plugins are finished: more can be added.
 pub fn unfinished() -> App {
     let mut app = without_hands();
-    app.add_plugins((ClothDragPlugin, SphereControlsPlugin));
+    app.add_plugins((ClothDragPlugin, ClothSphereControlsPlugin));
     app
 }
 
@@ -131,7 +131,7 @@ pub fn curtain(app: &mut App, resolution: u32) -> Entity {
     app.world_mut()
         .spawn((
             Cloth::grid(Vec2::splat(2.0), UVec2::splat(resolution)).centered(),
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
             MeshMaterial3d::<StandardMaterial>::default(),
         ))
         .id()

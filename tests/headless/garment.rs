@@ -89,7 +89,7 @@ fn pinned(app: &App, skirt: Entity) -> Vec<u32> {
     match get::<ClothPins>(app, skirt).pins.as_slice() {
         [
             ClothPin {
-                selection: PinSelection::Particles(particles),
+                selection: ClothSelection::Particles(particles),
                 ..
             },
         ] => particles.clone(),
@@ -102,7 +102,7 @@ fn two_primitives_are_one_cloth_whose_seams_stay_closed() {
     let mut app = game();
     let skirt = skirt(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
     );
     let report = &get::<ClothTopology>(&app, skirt).report;
     let vertices: usize = (0..2).map(|k| source(&app, k).count_vertices()).sum();
@@ -152,7 +152,7 @@ fn each_part_is_drawn_where_its_node_is() {
     let mut app = game();
     let skirt = skirt(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
     );
     app.world_mut().entity_mut(skirt).insert(
         Transform::from_xyz(3.0, 0.5, -1.0)
@@ -183,7 +183,7 @@ fn pins_are_named_in_four_ways() {
     let mut app = game();
     let by_attribute = skirt(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
     );
     let wanted = pinned(&app, by_attribute);
     // Two of the four rows of the waistband are above a half.
@@ -208,11 +208,11 @@ fn pins_are_named_in_four_ways() {
         .filter_map(|(weight, vertex)| (weight > 0.5).then_some(vertex))
         .collect();
     for pins in [
-        MeshPins::color(ColorChannel::Alpha),
-        MeshPins::matching(|p| p.y > 1.0225),
-        MeshPins::vertices(list),
+        ClothMeshPins::color(ClothColorChannel::Alpha),
+        ClothMeshPins::matching(|p| p.y > 1.0225),
+        ClothMeshPins::vertices(list),
     ] {
-        let painted = matches!(pins, MeshPins::Color { .. });
+        let painted = matches!(pins, ClothMeshPins::Color { .. });
         let by_other = skirt(&mut app, ClothFromMesh::default().with_pins(pins));
         assert_eq!(pinned(&app, by_other), wanted);
         assert_eq!(app.world().get::<ClothWeights>(by_other).is_some(), painted);
@@ -223,17 +223,17 @@ fn pins_are_named_in_four_ways() {
 fn what_names_pins_wrongly_is_told_and_the_cloth_falls() {
     let mut app = game();
     for (pins, says) in [
-        (MeshPins::vertices([1, 99_999]), "99999"),
+        (ClothMeshPins::vertices([1, 99_999]), "99999"),
         (
-            MeshPins::Attribute {
+            ClothMeshPins::Attribute {
                 attribute: Mesh::ATTRIBUTE_UV_1,
                 threshold: 0.5,
             },
             "Vertex_Uv_1",
         ),
         (
-            MeshPins::Color {
-                channel: ColorChannel::Red,
+            ClothMeshPins::Color {
+                channel: ClothColorChannel::Red,
                 threshold: f32::NAN,
             },
             "NaN",
@@ -255,7 +255,7 @@ fn what_names_pins_wrongly_is_told_and_the_cloth_falls() {
         assert!(particle(&app, skirt, 0).y < 1.0);
         // The right ones clear it.
         let mut entity = app.world_mut().entity_mut(skirt);
-        entity.get_mut::<ClothFromMesh>().expect("there").pins = MeshPins::attribute();
+        entity.get_mut::<ClothFromMesh>().expect("there").pins = ClothMeshPins::attribute();
         frames(&mut app, 2);
         assert!(get::<ClothStatus>(&app, skirt).is_ok());
         assert_eq!(pinned(&app, skirt).len(), 2 * AROUND);
@@ -305,7 +305,7 @@ fn two_garments_of_one_file_share_nothing_that_moves() {
     let mut app = game();
     let held = skirt(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
     );
     let loose = skirt(&mut app, ClothFromMesh::default());
     let before = positions(source(&app, 1));
@@ -336,7 +336,7 @@ fn a_garment_whose_file_is_read_again_is_made_again() {
         .load("garments/skirt.gltf");
     let skirt = skirt(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::attribute()),
+        ClothFromMesh::default().with_pins(ClothMeshPins::attribute()),
     );
     frames(&mut app, 60);
     let before: Vec<Entity> = parts(&app, skirt).iter().map(|part| part.0).collect();

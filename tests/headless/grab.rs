@@ -25,7 +25,7 @@ fn spike(sim: &Sim, cloth: Entity) -> f32 {
 
 fn curtain() -> (Sim, Entity) {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(N as u32), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(N as u32), ClothPins::corners(ClothCorner::TOP)));
     sim.seconds(1.0);
     (sim, cloth)
 }

@@ -17,8 +17,8 @@ fn an_app_without_cloth_runs() {
 fn despawning_in_the_middle_of_things_does_no_harm() {
     let mut sim = Sim::new();
     let sphere = sim.spawn(ClothCollider::sphere(0.3));
-    let stays = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
-    let goes = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let stays = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
+    let goes = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(5);
     sim.edit::<ClothGrab>(goes, |grab| grab.take(14, 0.2, Vec3::Z));
     sim.edit::<ClothForces>(goes, |forces| forces.add_force(3, Vec3::X));
@@ -69,7 +69,7 @@ fn removing_the_cloth_leaves_an_entity_that_is_none() {
 fn cloths_of_one_world_do_not_feel_each_other() {
     let run = |others: usize| {
         let mut sim = Sim::new();
-        let cloth = sim.spawn((square(6), ClothPins::corners([GridCorner::TopLeft])));
+        let cloth = sim.spawn((square(6), ClothPins::corners([ClothCorner::TopLeft])));
         for _ in 0..others {
             sim.spawn((square(7), ClothMaterial::denim()));
         }

@@ -10,7 +10,10 @@ use bevy::{
     prelude::*,
     time::TimeUpdateStrategy,
 };
-use tailorbird::prelude::*;
+use tailorbird::{
+    mesh::{ClothMesh, ClothVertexBinding},
+    prelude::*,
+};
 
 use crate::game::*;
 
@@ -316,6 +319,43 @@ fn a_scaled_cloth_is_drawn_at_its_size_once() {
         assert!((place * p).distance(particle(&app, cloth, i)) < 1e-5);
     }
     assert!((particle(&app, cloth, 0)).distance(Vec3::new(-2.0, 2.0, 0.0)) < 1e-5);
+}
+
+#[test]
+fn a_vertex_that_is_bound_to_a_triangle_is_drawn_on_it() {
+    let mut app = game();
+    let cloth = curtain(&mut app, 9);
+    frames(&mut app, 10);
+    let (corners, weights) = ([0, 1, 9], [0.5, 0.3, 0.2]);
+    let bind = |app: &mut App, binding| {
+        let mut mesh = app.world_mut().get_mut::<ClothMesh>(cloth).expect("built");
+        assert!(mesh.parts_mut()[0].bind(40, binding));
+    };
+    let mean = |places: &[Vec3]| -> Vec3 {
+        let each = corners.iter().zip(weights);
+        each.map(|(i, weight)| weight * places[*i as usize]).sum()
+    };
+    let before = positions(&app, cloth);
+    bind(&mut app, ClothVertexBinding::Triangle { corners, weights });
+    app.world_mut().resource_mut::<ClothSettings>().paused = true;
+    for scale in [1.0, 2.0] {
+        app.world_mut()
+            .get_mut::<Transform>(cloth)
+            .expect("one")
+            .scale = Vec3::splat(scale);
+        frames(&mut app, 3);
+        let (places, directions) = (positions(&app, cloth), normals(&app, cloth));
+        assert!(places[40].distance(mean(&places)) < 1e-5, "scale {scale}");
+        assert!(directions[40].distance(mean(&directions).normalize()) < 1e-5);
+        assert!(places[39].distance(before[39]) < 0.1 && places[41].distance(before[41]) < 0.1);
+    }
+    bind(&mut app, ClothVertexBinding::Particle(40));
+    app.world_mut()
+        .get_mut::<Transform>(cloth)
+        .expect("one")
+        .scale = Vec3::ONE;
+    frames(&mut app, 3);
+    assert!(positions(&app, cloth)[40].distance(before[40]) < 0.1);
 }
 
 /// A quad of two triangles that share no vertex: its diagonal is a seam of the UVs.

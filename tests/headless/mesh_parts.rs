@@ -108,7 +108,7 @@ fn three(app: &mut App, from_mesh: ClothFromMesh) -> (Entity, [Entity; 3]) {
 fn meshes_below_an_entity_are_one_cloth_wherever_they_are() {
     for shading in [ClothShading::Smooth, ClothShading::Flat] {
         let mut app = game();
-        let pins = MeshPins::matching(|p| p.y > 0.9);
+        let pins = ClothMeshPins::matching(|p| p.y > 0.9);
         let (cloth, parts) = three(&mut app, ClothFromMesh::default().with_pins(pins));
         app.world_mut().entity_mut(cloth).insert(shading);
         frames(&mut app, 3);
@@ -159,7 +159,7 @@ fn only_the_meshes_with_the_name_become_cloth_and_those_that_are_left_out_get_ba
 
     let mut entity = app.world_mut().entity_mut(cloth);
     entity.get_mut::<ClothFromMesh>().expect("there").parts =
-        MeshParts::Named(vec!["first".into()]);
+        ClothMeshParts::Named(vec!["first".into()]);
     frames(&mut app, 3);
     assert_eq!(get::<ClothParticles>(&app, cloth).len(), 25);
     assert_eq!(get::<Mesh3d>(&app, third), &before);
@@ -229,7 +229,7 @@ fn double_sided_faces_are_one_layer_each_side_of_which_is_lit() {
                 .world_mut()
                 .resource_mut::<Assets<StandardMaterial>>()
                 .add(StandardMaterial::default());
-            let pins = MeshPins::matching(|p| p.y == 1.0 && p.x != 0.5);
+            let pins = ClothMeshPins::matching(|p| p.y == 1.0 && p.x != 0.5);
             let cloth = app
                 .world_mut()
                 .spawn((
@@ -291,7 +291,7 @@ fn triangles_that_face_the_wrong_way_are_turned_and_lit() {
         frames(&mut app, 10);
         let topology = get::<ClothTopology>(&app, cloth);
         assert_eq!(topology.report.turned.count, 4);
-        assert!(topology.lattice.is_some(), "a grid again");
+        assert!(topology.lattice().is_some(), "a grid again");
         assert!(is_lit_from_its_fronts(mesh(&app, cloth)));
         assert!(corners(mesh(&app, cloth)).iter().all(|(_, n)| n.z > 0.99));
     }
@@ -302,7 +302,7 @@ fn a_cloth_that_is_thrown_far_is_still_there() {
     let mut app = game();
     let (cloth, parts) = three(
         &mut app,
-        ClothFromMesh::default().with_pins(MeshPins::vertices([0])),
+        ClothFromMesh::default().with_pins(ClothMeshPins::vertices([0])),
     );
     frames(&mut app, 10);
     for place in [Vec3::splat(1e4), Vec3::new(-3e4, 0.0, 20.0), Vec3::ZERO] {
@@ -339,7 +339,7 @@ fn what_is_wrong_with_one_part_is_told_and_nothing_becomes_cloth() {
     let errors: Vec<_> = get::<ClothStatus>(&app, cloth).errors().cloned().collect();
     assert_eq!(
         errors,
-        [ClothErrorKind::Shape(ShapeError::IndexOutOfRange {
+        [ClothErrorKind::Shape(ClothShapeError::IndexOutOfRange {
             at: 2,
             value: 30,
             vertices: 25

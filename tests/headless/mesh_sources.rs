@@ -79,7 +79,7 @@ fn floats<const N: usize>(mesh: &Mesh, attribute: MeshVertexAttribute) -> Vec<[f
 }
 
 fn painted() -> ClothFromMesh {
-    ClothFromMesh::default().with_pins(MeshPins::color(ColorChannel::Red))
+    ClothFromMesh::default().with_pins(ClothMeshPins::color(ClothColorChannel::Red))
 }
 
 /// Cloth that was made, with its particles.
@@ -181,7 +181,7 @@ fn paint_is_data_and_not_drawn_unless_asked_for() {
             .is_some()
     );
     // Colours that name nothing are colours.
-    let pins = MeshPins::matching(|p| p.y > -0.1);
+    let pins = ClothMeshPins::matching(|p| p.y > -0.1);
     let colored = made(&mut app, mesh, ClothFromMesh::default().with_pins(pins));
     assert!(
         drawn(&app, colored)
@@ -235,7 +235,7 @@ fn a_skin_and_morph_targets_do_not_move_what_cloth_moves() {
     app.world_mut()
         .get_mut::<ClothFromMesh>(parent)
         .expect("there")
-        .parts = MeshParts::Named(vec!["other".into()]);
+        .parts = ClothMeshParts::Named(vec!["other".into()]);
     frames(&mut app, 3);
     assert_eq!(get::<SkinnedMesh>(&app, part).joints, [joint]);
     assert!(drawn(&app, part).has_morph_targets());
@@ -246,12 +246,12 @@ fn another_mesh_is_another_cloth_with_the_same_pins_and_material() {
     let mut app = game();
     let [coarse, fine] = [5, 9].map(|n| add(&mut app, square(n)));
     let cloth = made(&mut app, coarse, ClothFromMesh::default());
-    let held = PinSelection::Within {
+    let held = ClothSelection::Within {
         center: Vec3::ZERO,
         radius: 0.05,
     };
     let by_hand = ClothPin {
-        author: PinAuthor::User,
+        author: ClothPinAuthor::User,
         ..ClothPin::at(24, Vec3::new(1.0, -1.0, 0.0))
     };
     let pins = ClothPins::default()

@@ -16,7 +16,7 @@ fn path(step: usize) -> Transform {
 #[test]
 fn pins_move_with_the_entity() {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(8), ClothPins::corners(GridCorner::TOP), path(0)));
+    let cloth = sim.spawn((square(8), ClothPins::corners(ClothCorner::TOP), path(0)));
     for k in 0..60 {
         sim.edit::<Transform>(cloth, |t| *t = path(k));
         sim.steps(1);
@@ -59,13 +59,13 @@ fn ten_kilometres_from_the_origin_nothing_changes() {
     let run = |offset: Vec3| {
         let mut sim = Sim::new();
         sim.app
-            .insert_resource(Wind::steady(Vec3::new(1.0, 0.0, 3.0)));
+            .insert_resource(ClothWind::steady(Vec3::new(1.0, 0.0, 3.0)));
         let place = Transform::from_translation(offset);
         sim.spawn((
             ClothCollider::half_space(),
             Transform::from_translation(offset - Vec3::Y * 0.4),
         ));
-        let cloth = sim.spawn((square(10), ClothPins::corners(GridCorner::TOP), place));
+        let cloth = sim.spawn((square(10), ClothPins::corners(ClothCorner::TOP), place));
         sim.seconds(2.0);
         let particles = sim.particles(cloth);
         particles.positions().collect::<Vec<_>>()
@@ -85,7 +85,7 @@ fn ten_kilometres_from_the_origin_nothing_changes() {
 fn a_moving_start_gives_no_spike() {
     for speed in [5.0, 20.0] {
         let mut sim = Sim::vacuum().without_gravity();
-        let cloth = sim.spawn((square(8), ClothPins::edges([GridEdge::Top])));
+        let cloth = sim.spawn((square(8), ClothPins::edges([ClothEdge::Top])));
         sim.steps(1);
         let mut fastest = 0.0f32;
         for k in 1..=20 {
@@ -111,7 +111,7 @@ fn a_turning_entity_keeps_its_shape() {
     let scale = Vec3::new(1.1, 0.9, 1.3);
     let cloth = sim.spawn((
         square(8),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         path(0).with_scale(scale),
     ));
     sim.steps(30);
@@ -126,9 +126,9 @@ fn a_turning_entity_keeps_its_shape() {
 #[test]
 fn a_wind_blows_along_world_axes_while_the_entity_turns() {
     let mut sim = Sim::new().without_gravity();
-    sim.app.insert_resource(Wind {
-        model: WindModel::Classic,
-        ..Wind::steady(Vec3::Y * 5.0)
+    sim.app.insert_resource(ClothWind {
+        model: ClothWindModel::Classic,
+        ..ClothWind::steady(Vec3::Y * 5.0)
     });
     let cloth = sim.spawn((
         Cloth::grid(Vec2::ONE, UVec2::splat(4)).centered(),

@@ -158,11 +158,11 @@ fn scenes_bring_their_own_material_and_wind() {
 #[test]
 fn a_button_for_each_fabric_sets_how_it_moves_and_looks() {
     let mut bench = Bench::new();
-    for fabric in Fabric::ALL {
+    for fabric in ClothFabric::ALL {
         bench.settings.material.damping = 9.0;
-        bench.click(fabric.name());
-        assert_eq!(bench.settings.preset, fabric.name());
-        assert_eq!(bench.settings.material, fabric.physics());
+        bench.click(&fabric.name);
+        assert_eq!(bench.settings.preset, fabric.name);
+        assert_eq!(bench.settings.material, fabric.material);
     }
 }
 
@@ -177,7 +177,7 @@ fn choices_change_one_thing_each() {
     expected.picking = ClothPickingBackend::Depth;
     assert_eq!(bench.settings, expected);
     bench.click("classic");
-    expected.wind.model = WindModel::Classic;
+    expected.wind.model = ClothWindModel::Classic;
     assert_eq!(bench.settings, expected);
     for (name, _) in expected.clone().look.toggles() {
         bench.click(name);
@@ -284,7 +284,7 @@ fn both_solvers_are_shown_with_their_stretch_and_time() {
     let cloth = |solver, mean| ClothFigures {
         solver,
         particles: 100,
-        stretch: Stretch {
+        stretch: ClothStretch {
             mean,
             p99: 2.0 * mean,
             max: 3.0 * mean,

@@ -13,7 +13,7 @@ fn swing(height: f32, substeps: u32) -> (f32, f32) {
     let cloth = sim.spawn((
         Cloth::grid(Vec2::new(0.3, height), UVec2::splat(2)),
         undamped(),
-        ClothPins::edges([GridEdge::Top]),
+        ClothPins::edges([ClothEdge::Top]),
     ));
     sim.steps(0);
     // A push of 0.05 √(g L): swings out by 0.05 rad.

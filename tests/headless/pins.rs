@@ -10,7 +10,7 @@ fn pins_hold_at_their_targets_and_the_later_one_counts() {
     let mut sim = Sim::new();
     let first = Vec3::new(-0.5, 0.6, 0.1);
     let later = Vec3::new(-0.4, 0.55, -0.1);
-    let pins = ClothPins::corners([GridCorner::TopRight])
+    let pins = ClothPins::corners([ClothCorner::TopRight])
         .with(ClothPin::at(0, first))
         .with(ClothPin::at(0, later));
     let cloth = sim.spawn((square(6), pins));
@@ -45,7 +45,7 @@ fn a_pin_in_flight_holds_the_particle_where_it_was() {
 #[test]
 fn what_is_released_falls_freely() {
     let mut sim = Sim::vacuum();
-    let cloth = sim.spawn((square(5), undamped(), ClothPins::edges([GridEdge::Top])));
+    let cloth = sim.spawn((square(5), undamped(), ClothPins::edges([ClothEdge::Top])));
     sim.steps(5);
     sim.edit::<ClothPins>(cloth, |pins| pins.pins.clear());
     let before = sim.weighted_mean(cloth, &sim.velocities(cloth)).y;
@@ -100,10 +100,10 @@ fn what_a_target_moved_keeps_that_velocity_when_released() {
 #[test]
 fn a_pin_out_of_range_is_an_error_and_the_others_hold() {
     let mut sim = Sim::new();
-    let pins = ClothPins::corners([GridCorner::TopLeft])
-        .with(ClothPin::new(PinSelection::Particle(999)))
-        .with(ClothPin::new(PinSelection::Cell(UVec2::new(6, 0))))
-        .with(ClothPin::new(PinSelection::Cell(UVec2::new(5, 0))));
+    let pins = ClothPins::corners([ClothCorner::TopLeft])
+        .with(ClothPin::new(ClothSelection::Particle(999)))
+        .with(ClothPin::new(ClothSelection::Cell(UVec2::new(6, 0))))
+        .with(ClothPin::new(ClothSelection::Cell(UVec2::new(5, 0))));
     let cloth = sim.spawn((square(6), pins));
     sim.steps(10);
     assert_eq!(sim.particles(cloth).pinned().collect::<Vec<_>>(), [0, 5]);
@@ -134,11 +134,11 @@ fn selections_name_the_particles_they_say() {
         sim.particles(cloth).pinned().collect()
     };
     assert_eq!(
-        pinned(&mut sim, ClothPins::corners(GridCorner::ALL)),
+        pinned(&mut sim, ClothPins::corners(ClothCorner::ALL)),
         [0, 4, 10, 14]
     );
     assert_eq!(
-        pinned(&mut sim, ClothPins::edges([GridEdge::Right])),
+        pinned(&mut sim, ClothPins::edges([ClothEdge::Right])),
         [4, 9, 14]
     );
     assert_eq!(
@@ -153,11 +153,11 @@ fn selections_name_the_particles_they_say() {
 
 #[test]
 fn pins_of_the_player_are_released_alone() {
-    let mut pins = ClothPins::corners(GridCorner::TOP).with(ClothPin {
-        author: PinAuthor::User,
-        ..ClothPin::new(PinSelection::Particle(7))
+    let mut pins = ClothPins::corners(ClothCorner::TOP).with(ClothPin {
+        author: ClothPinAuthor::User,
+        ..ClothPin::new(ClothSelection::Particle(7))
     });
     assert!(pins.has_user_pins());
     assert_eq!(pins.release_user_pins(), 1);
-    assert_eq!(pins, ClothPins::corners(GridCorner::TOP));
+    assert_eq!(pins, ClothPins::corners(ClothCorner::TOP));
 }

@@ -10,7 +10,7 @@ fn a_scaled_entity_has_scaled_rest_lengths() {
     let mut sim = Sim::new();
     let cloth = sim.spawn((
         square(5),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         Transform::from_scale(Vec3::splat(3.0)),
     ));
     sim.steps(1);
@@ -38,7 +38,7 @@ fn another_resolution_keeps_shape_motion_and_mass() {
     let mut sim = Sim::new();
     let cloth = sim.spawn((
         square(9),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         Transform::from_rotation(lying()),
     ));
     sim.steps(40);
@@ -71,7 +71,7 @@ fn another_resolution_keeps_shape_motion_and_mass() {
 #[test]
 fn another_size_starts_from_rest() {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(20);
     sim.edit::<Cloth>(cloth, |cloth| {
         *cloth = Cloth::grid(Vec2::new(3.0, 2.0), UVec2::new(7, 4));
@@ -87,7 +87,7 @@ fn another_size_starts_from_rest() {
 #[test]
 fn another_material_changes_masses_and_not_the_shape() {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(20);
     let there = sim.positions(cloth);
     sim.settings().paused = true;
@@ -103,7 +103,7 @@ fn another_material_changes_masses_and_not_the_shape() {
 fn a_softer_material_stretches_more() {
     let stretch = |material: ClothMaterial| {
         let mut sim = Sim::new();
-        let pins = ClothPins::edges([GridEdge::Top]);
+        let pins = ClothPins::edges([ClothEdge::Top]);
         let cloth = sim.spawn((square(8), material, pins));
         sim.seconds(5.0);
         -sim.at(cloth, 60).y - 0.5

@@ -31,7 +31,7 @@ fn cloth_at_rest_stays_at_rest_for_ten_minutes() {
         ClothCollider::sphere(0.3),
         Transform::from_xyz(5.0, 0.0, 0.0),
     ));
-    let hanging = sim.spawn((square(12), ClothPins::corners(GridCorner::TOP)));
+    let hanging = sim.spawn((square(12), ClothPins::corners(ClothCorner::TOP)));
     let lying = sim.spawn((square(12), place(-5.0, -2.9)));
     let draped = sim.spawn((
         square(12),

@@ -41,7 +41,7 @@ fn every_component_is_registered() {
 fn every_resource_is_registered() {
     let sim = Sim::new();
     let registry = sim.app.world().resource::<AppTypeRegistry>().read();
-    for id in [TypeId::of::<ClothSettings>(), TypeId::of::<Wind>()] {
+    for id in [TypeId::of::<ClothSettings>(), TypeId::of::<ClothWind>()] {
         assert!(
             registry
                 .get(id)
@@ -107,7 +107,7 @@ fn a_cloth_simulates_after_loading_as_the_one_that_was_saved() {
     );
     let pins = ClothPins::particles([1]).with(ClothPin::at(0, Vec3::new(0.1, 0.0, 0.0)));
     for (cloth, pins) in [
-        (square(5), ClothPins::corners(GridCorner::TOP)),
+        (square(5), ClothPins::corners(ClothCorner::TOP)),
         (Cloth::mesh(positions, indices), pins),
     ] {
         let mut sim = Sim::new();
@@ -132,7 +132,7 @@ fn a_cloth_simulates_after_loading_as_the_one_that_was_saved() {
 fn a_whole_entity_survives_a_round_trip() {
     // With everything that is reflected, the state too: what cannot be saved is built again.
     let mut sim = Sim::new();
-    let saved = sim.spawn((square(5), ClothPins::corners(GridCorner::TOP)));
+    let saved = sim.spawn((square(5), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(10);
     let registry = sim.app.world().resource::<AppTypeRegistry>().clone();
     let text = {

@@ -8,9 +8,9 @@ use crate::world::*;
 #[test]
 fn paused_cloth_stands_still_and_does_single_steps() {
     let mut sim = Sim::new();
-    let cloth = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     let mut free = Sim::new();
-    let other = free.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let other = free.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(10);
     free.steps(10);
     sim.settings().paused = true;
@@ -36,7 +36,7 @@ fn paused_cloth_stands_still_and_does_single_steps() {
 #[test]
 fn cloth_that_is_spawned_while_paused_is_built_and_stands_still() {
     let mut sim = Sim::new().with_settings(|s| s.paused = true);
-    let cloth = sim.spawn((square(6), ClothPins::corners(GridCorner::TOP)));
+    let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     sim.steps(3);
     let rest = sim.get::<Cloth>(cloth).rest_positions();
     assert_eq!(sim.positions(cloth), rest);
@@ -52,7 +52,7 @@ fn invalid_settings_leave_the_last_valid_ones_in_force() {
     ];
     let run = |spoil: Option<fn(&mut ClothSettings)>| {
         let mut sim = Sim::new().with_passes(4, 3);
-        let cloth = sim.spawn((square(6), ClothPins::corners([GridCorner::TopLeft])));
+        let cloth = sim.spawn((square(6), ClothPins::corners([ClothCorner::TopLeft])));
         sim.steps(5);
         if let Some(spoil) = spoil {
             spoil(&mut sim.settings());
@@ -82,7 +82,7 @@ fn without_iterations_particles_fall_freely() {
         viscosity: 0.0,
         ..undamped()
     };
-    let cloth = sim.spawn((square(4), free, ClothPins::edges([GridEdge::Top])));
+    let cloth = sim.spawn((square(4), free, ClothPins::edges([ClothEdge::Top])));
     sim.steps(30);
     let n = 30.0;
     let fallen = -G * DT * DT * n * (n + 1.0) / 2.0;

@@ -79,21 +79,21 @@ fn any_settings() -> impl Strategy<Value = DemoSettings> {
                 drag: m[9],
                 lift: m[10],
             };
-            settings.wind = Wind {
+            settings.wind = ClothWind {
                 velocity: velocity.into(),
-                gusts: Gusts {
+                gusts: ClothGusts {
                     strength: air[0],
                     period: air[1],
                 },
-                turbulence: Turbulence {
+                turbulence: ClothTurbulence {
                     speed: air[2],
                     scale: air[3],
                     seed,
                 },
                 model: if classic {
-                    WindModel::Classic
+                    ClothWindModel::Classic
                 } else {
-                    WindModel::Aerodynamic
+                    ClothWindModel::Aerodynamic
                 },
                 air_density,
             };

@@ -17,13 +17,13 @@ fn swinging(app: &mut App, shading: ClothShading) -> Entity {
         .spawn((
             Cloth::grid(Vec2::ONE, UVec2::splat(SIDE)),
             ClothMaterial::cotton(),
-            ClothPins::edges([GridEdge::Top]),
+            ClothPins::edges([ClothEdge::Top]),
             ClothSleep::never(),
             shading,
             Transform::from_rotation(Quat::from_rotation_x(-1.2)),
         ))
         .id();
-    app.insert_resource(Wind::steady(Vec3::new(1.0, 0.0, 2.0)));
+    app.insert_resource(ClothWind::steady(Vec3::new(1.0, 0.0, 2.0)));
     frames(app, 20);
     cloth
 }

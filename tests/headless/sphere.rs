@@ -104,7 +104,7 @@ fn chase(
 /// A pinned curtain that a sphere flies through: how deep particles get into the sphere or its path [m].
 fn flown_through(substeps: u32, speed: f32, radius: f32) -> f32 {
     let mut sim = Sim::new().with_passes(substeps, 2);
-    let cloth = sim.spawn((square(16), ClothPins::edges([GridEdge::Top])));
+    let cloth = sim.spawn((square(16), ClothPins::edges([ClothEdge::Top])));
     let start = Vec3::new(0.03, -0.1, 1.5);
     let sphere = sim.spawn((
         ClothCollider::sphere(radius),

@@ -9,7 +9,7 @@ fn sphere(app: &mut App) -> Entity {
     app.world_mut()
         .spawn((
             ClothCollider::sphere(0.3),
-            SphereControls {
+            ClothSphereControls {
                 speed: 1.0,
                 fast_speed: 3.0,
                 ..default()
@@ -102,7 +102,7 @@ fn a_game_may_still_put_the_sphere_elsewhere() {
 
 #[test]
 fn printing_the_controls_names_the_keys() {
-    let printed = SphereControls::default().to_string();
+    let printed = ClothSphereControls::default().to_string();
     for name in [
         "ArrowLeft",
         "ArrowRight",

@@ -21,7 +21,7 @@ fn a_curtain_in_gravitys_plane_stays_in_it() {
     let cloth = sim.spawn((
         square(12),
         ClothMaterial::silk(),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
     ));
     sim.seconds(3.0);
     // Nothing in the scene has a z coordinate other than 0: exact.
@@ -37,7 +37,7 @@ fn a_hanging_sheet_stays_mirrored() {
         let cloth = sim.spawn((
             square(n),
             ClothMaterial::cotton(),
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
             Transform::from_rotation(lying()),
         ));
         let n = n as usize;

@@ -5,7 +5,7 @@ use tailorbird::prelude::*;
 
 use crate::world::*;
 
-fn in_wind(wind: Wind, substeps: u32) -> Sim {
+fn in_wind(wind: ClothWind, substeps: u32) -> Sim {
     let mut sim = Sim::new().without_gravity().with_passes(substeps, 2);
     sim.app.insert_resource(wind);
     sim
@@ -13,7 +13,7 @@ fn in_wind(wind: Wind, substeps: u32) -> Sim {
 
 /// The mean velocity of a sheet in the x-y plane after one step in the wind.
 fn pushed(wind: Vec3, drag: f32, lift: f32) -> Vec3 {
-    let mut sim = in_wind(Wind::steady(wind), 4);
+    let mut sim = in_wind(ClothWind::steady(wind), 4);
     let cloth = sim.spawn((
         square(4),
         ClothMaterial {
@@ -53,11 +53,11 @@ fn drag_alone_pushes_along_the_wind() {
 
 #[test]
 fn an_edge_on_sheet_feels_nothing() {
-    for model in [WindModel::Aerodynamic, WindModel::Classic] {
+    for model in [ClothWindModel::Aerodynamic, ClothWindModel::Classic] {
         let mut sim = in_wind(
-            Wind {
+            ClothWind {
                 model,
-                ..Wind::steady(Vec3::new(20.0, -7.0, 0.0))
+                ..ClothWind::steady(Vec3::new(20.0, -7.0, 0.0))
             },
             8,
         );
@@ -75,9 +75,9 @@ fn the_classic_force_is_that_of_the_formula() {
     // Force on the sheet: ŵ |w · n| A. Half of the wind's angle to the normal is in |w · n|.
     let (w, size) = (Vec3::new(3.0, 1.0, -2.0), Vec2::new(0.5, 0.4));
     let mut sim = in_wind(
-        Wind {
-            model: WindModel::Classic,
-            ..Wind::steady(w)
+        ClothWind {
+            model: ClothWindModel::Classic,
+            ..ClothWind::steady(w)
         },
         8,
     );
@@ -113,7 +113,7 @@ fn the_wind_never_adds_energy_relative_to_the_air() {
             // Without springs, what changes is the wind's doing alone. With them a sheet that was folded can unfold again,
             // but never with more energy than it had at the start.
             for iterations in [0, 2] {
-                let mut sim = in_wind(Wind::steady(wind), substeps);
+                let mut sim = in_wind(ClothWind::steady(wind), substeps);
                 sim.settings().iterations = iterations;
                 let cloth = sim.spawn((
                     square(8),
@@ -143,7 +143,7 @@ fn still_air_never_adds_energy() {
     for substeps in [1, 2, 4, 8, 16] {
         // As above: the air alone, then with springs that take up energy and give it back.
         for iterations in [0, 2] {
-            let mut sim = in_wind(Wind::default(), substeps);
+            let mut sim = in_wind(ClothWind::default(), substeps);
             sim.settings().iterations = iterations;
             let cloth = sim.spawn((
                 square(8),
@@ -179,7 +179,7 @@ fn still_air_never_adds_energy() {
 fn a_free_cloth_gets_as_fast_as_the_wind_and_not_faster() {
     for substeps in [1, 2, 4, 8, 16] {
         for strength in [0.0, 0.5] {
-            let mut wind = Wind::steady(Vec3::new(8.0, 2.0, 29.0));
+            let mut wind = ClothWind::steady(Vec3::new(8.0, 2.0, 29.0));
             wind.gusts.strength = strength;
             let limit = wind.velocity.length() * (1.0 + strength);
             let mut sim = in_wind(wind, substeps);
@@ -210,13 +210,13 @@ fn a_free_cloth_gets_as_fast_as_the_wind_and_not_faster() {
 #[test]
 fn a_flag_in_a_storm_stays_whole() {
     for substeps in [1, 4, 8] {
-        let mut wind = Wind::steady(Vec3::new(30.0, 0.0, 3.0));
+        let mut wind = ClothWind::steady(Vec3::new(30.0, 0.0, 3.0));
         wind.gusts.strength = 0.5;
         let mut sim = in_wind(wind, substeps);
         let cloth = sim.spawn((
             square(12),
             ClothMaterial::silk(),
-            ClothPins::edges([GridEdge::Left]),
+            ClothPins::edges([ClothEdge::Left]),
         ));
         let mut fastest = 0.0f32;
         for _ in 0..300 {
@@ -241,7 +241,7 @@ fn a_flag_in_a_storm_stays_whole() {
 
 #[test]
 fn gusts_are_the_same_in_every_run_and_stay_within_their_strength() {
-    let mut wind = Wind::steady(Vec3::new(10.0, 0.0, 0.0));
+    let mut wind = ClothWind::steady(Vec3::new(10.0, 0.0, 0.0));
     wind.gusts.strength = 0.3;
     let speeds: Vec<f32> = (0..6000)
         .map(|k| wind.velocity_at(f64::from(k) * 0.01).length())
@@ -255,11 +255,11 @@ fn gusts_are_the_same_in_every_run_and_stay_within_their_strength() {
 #[test]
 fn an_invalid_wind_leaves_the_last_valid_one() {
     let run = |spoil: bool| {
-        let mut sim = in_wind(Wind::steady(Vec3::Z * 5.0), 4);
+        let mut sim = in_wind(ClothWind::steady(Vec3::Z * 5.0), 4);
         let cloth = sim.spawn(square(5));
         sim.steps(3);
         if spoil {
-            sim.app.world_mut().resource_mut::<Wind>().velocity = Vec3::NAN;
+            sim.app.world_mut().resource_mut::<ClothWind>().velocity = Vec3::NAN;
         }
         sim.steps(10);
         sim.hash(cloth)

@@ -1,4 +1,4 @@
-//! What the tests simulate in a [`Sim`].
+//! Scenes of the tests, for a [`Sim`].
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;

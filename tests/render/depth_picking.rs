@@ -343,7 +343,7 @@ fn a_swinging_cloth_is_found() {
         .entity_mut(cloth)
         .insert(ClothMaterial::denim());
     app.app
-        .insert_resource(Wind::steady(Vec3::new(0.0, 0.0, -2.0)));
+        .insert_resource(ClothWind::steady(Vec3::new(0.0, 0.0, -2.0)));
     let camera = View::ALL[0].spawn(&mut app);
     use_backend(&mut app, ClothPickingBackend::Depth);
     let middle = SIZE.as_vec2() / 2.0 + 0.5;

@@ -38,7 +38,7 @@ fn cloth_is_there_after_the_device_was_lost() {
     });
     world.spawn((
         Cloth::grid(Vec2::ONE, UVec2::splat(20)).centered(),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
         ClothSleep::never(),
         MeshMaterial3d(look),
         Transform::from_rotation(Quat::from_rotation_x(-1.2)),

@@ -34,7 +34,7 @@ fn flying(app: &mut Offscreen, at: Transform, look: StandardMaterial, velocity: 
         ..ClothMaterial::cotton()
     };
     let world = app.app.world_mut();
-    world.insert_resource(Wind::vacuum());
+    world.insert_resource(ClothWind::vacuum());
     world.resource_mut::<ClothSettings>().gravity = Vec3::ZERO;
     let bundle = (cloth, fabric, ClothSleep::never(), at, look);
     let cloth = world.spawn(bundle).id();

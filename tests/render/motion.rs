@@ -68,7 +68,7 @@ fn app(test: &str) -> Option<Offscreen> {
     let frame = TimeUpdateStrategy::ManualDuration(fixed.timestep());
     world.insert_resource(fixed);
     world.insert_resource(frame);
-    world.insert_resource(Wind::vacuum());
+    world.insert_resource(ClothWind::vacuum());
     let target = app.target();
     let projection = PerspectiveProjection {
         fov: FOV,
@@ -296,7 +296,7 @@ fn contrast_while_it_falls(test: &str, with_plugin: bool) -> Option<f32> {
     let world = app.app.world_mut();
     world.insert_resource(fixed);
     world.insert_resource(frame);
-    world.insert_resource(Wind::vacuum());
+    world.insert_resource(ClothWind::vacuum());
     let material = chequered(&mut app);
     let target = app.target();
     let world = app.app.world_mut();

@@ -129,7 +129,7 @@ impl Offscreen {
             .add_plugins((
                 ClothPlugins::default(),
                 ClothDragPlugin,
-                SphereControlsPlugin,
+                ClothSphereControlsPlugin,
             ))
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
         app.finish();

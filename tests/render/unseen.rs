@@ -8,8 +8,8 @@ use crate::offscreen::{Offscreen, keep, pixel};
 const SIZE: UVec2 = UVec2::new(120, 90);
 
 fn is_unseen(app: &Offscreen, cloth: Entity) -> bool {
-    let rest = app.app.world().get::<ClothRest>(cloth);
-    rest.is_some_and(ClothRest::is_unseen)
+    let rest = app.app.world().get::<ClothSleepState>(cloth);
+    rest.is_some_and(ClothSleepState::is_unseen)
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn cloth_sleeps_while_neither_it_nor_its_shadow_is_seen() {
         };
         let cloth = (
             Cloth::grid(Vec2::ONE, UVec2::splat(8)).centered(),
-            ClothPins::edges([GridEdge::Top]),
+            ClothPins::edges([ClothEdge::Top]),
             MeshMaterial3d(material.clone()),
             Transform::from_xyz(x, 0.0, 0.0),
             sleep,

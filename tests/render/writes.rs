@@ -23,7 +23,7 @@ fn hang(app: &mut Offscreen, n: u32, at: Vec3, shading: ClothShading) -> Entity 
     let bundle = (
         Cloth::grid(Vec2::ONE, UVec2::splat(n)).centered(),
         ClothMaterial::cotton(),
-        ClothPins::corners([GridCorner::TopLeft, GridCorner::TopRight]),
+        ClothPins::corners([ClothCorner::TopLeft, ClothCorner::TopRight]),
         shading,
         material,
         Transform::from_translation(at).with_rotation(Quat::from_rotation_x(-1.0)),

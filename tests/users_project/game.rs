@@ -20,7 +20,7 @@ fn main() {
     app.world_mut().spawn((
         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
         ClothMaterial::cotton(),
-        ClothPins::corners(GridCorner::TOP),
+        ClothPins::corners(ClothCorner::TOP),
     ));
     let mut best = Duration::MAX;
     for _ in 0..60 {

@@ -1,5 +1,6 @@
 //! The project's chores. `cargo demo` is short for `cargo xtask demo`; see `.cargo/config.toml`.
 
+mod circles;
 mod demo;
 mod fabric;
 mod garment;
@@ -24,6 +25,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
+    /// Fail where files of the crates import each other in a circle
+    Circles,
     /// Install what the demo needs where that is missing, then run it; `--help` is the demo's
     #[command(disable_help_flag = true)]
     Demo {
@@ -46,6 +49,7 @@ enum Task {
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().task {
+        Task::Circles => circles::run(&workspace()),
         Task::Demo { arguments } => Ok(demo::run(&workspace(), &arguments)?),
         Task::Garment => {
             garment::write(&workspace().join("assets/garments"))?;

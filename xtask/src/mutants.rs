@@ -56,7 +56,7 @@ pub struct Options {
 /// When files cannot be read or written, cargo cannot be started, or the tests fail without a mutant.
 pub fn run(workspace: &Path, options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let crate_folder = workspace.join("crates/tailorbird_solver");
-    let sources = source::read(&crate_folder.join("src/kernels"))?;
+    let (sources, constants) = source::read(&crate_folder.join("src/kernels"))?;
     let mut mutants = Vec::new();
     for (number, source) in sources.iter().enumerate() {
         if source.is_kernel && (options.file.is_empty() || options.file.contains(&source.name)) {
@@ -82,7 +82,7 @@ pub fn run(workspace: &Path, options: &Options) -> Result<ExitCode, Box<dyn Erro
     }
 
     let known = Known::read(&crate_folder.join("mutants.toml"))?;
-    let bench = Bench::new(workspace, &crate_folder)?;
+    let bench = Bench::new(workspace, &crate_folder, &constants)?;
     let broken = bench.build(&sources, &mutants)?;
     let tests = Tests::new(&bench, mutants.len())?;
     let report = Report {

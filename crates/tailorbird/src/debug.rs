@@ -30,7 +30,7 @@ use tailorbird_cloth::{prelude::*, topology::constraints::ConstraintFamily};
 /// added before; does nothing without.
 pub struct ClothDebugPlugin;
 
-/// What is drawn of each cloth and collider; everything is off by default.
+/// Parts of each cloth and collider that are drawn; everything is off by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, GizmoConfigGroup)]
 #[reflect(Default)]
 pub struct ClothGizmos {
@@ -49,15 +49,15 @@ pub struct ClothGizmos {
     /// The box around each cloth.
     pub bounds: bool,
     /// The shape of each [`ClothCollider`], without its margin; of a half-space a square of 10 m. What is in
-    /// [`ExternalColliders`] is for its engine to draw.
+    /// [`ClothExternalColliders`] is for its engine to draw.
     pub colliders: bool,
-    /// The border of each [`WindZone`], paler where it begins to blow at full strength, and arrows for the air in them and around
+    /// The border of each [`ClothWindZone`], paler where it begins to blow at full strength, and arrows for the air in them and around
     /// cloths, 4 cm for 1 m/s.
     pub wind: bool,
 }
 
 impl ClothGizmos {
-    /// Whether anything of a cloth is drawn.
+    /// Returns whether anything of a cloth is drawn.
     fn shows_any(&self) -> bool {
         let no_cloth = Self {
             colliders: self.colliders,

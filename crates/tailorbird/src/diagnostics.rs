@@ -9,7 +9,7 @@ use tailorbird_cloth::prelude::*;
 pub struct ClothDiagnosticsPlugin;
 
 impl ClothDiagnosticsPlugin {
-    /// How long the last step took \[ms\].
+    /// Duration of the last step \[ms\].
     pub const STEP_TIME: DiagnosticPath = DiagnosticPath::const_new("cloth/step_time");
     /// Substeps of the last step.
     pub const SUBSTEPS: DiagnosticPath = DiagnosticPath::const_new("cloth/substeps");

@@ -29,19 +29,19 @@ use crate::picking::ClothPointerHit;
 /// Drags cloth with the pointer, and pins it with a key. Needs a picking backend; [`ClothDragSettings`] has the knobs.
 pub struct ClothDragPlugin;
 
-/// How cloth is dragged. Change it at any time.
+/// Settings of dragging. Change it at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothDragSettings {
     /// The button that drags.
     pub button: PointerButton,
-    /// How far around the held particle the cloth is taken along \[m\]; its direct neighbours always are.
+    /// Radius around the held particle within which the cloth is taken along \[m\]; its direct neighbours always are.
     pub radius: f32,
     /// Pins what is held; while nothing is held, releases the pins that were made so.
     pub pin_key: KeyCode,
-    /// Whether that releases the pins that the scene came with as well.
+    /// True if that releases the pins that the scene came with as well.
     pub release_scene_pins: bool,
-    /// How far a notch of the wheel moves what is held away from the camera \[m\].
+    /// Distance by which a notch of the wheel moves the held particle away from the camera \[m\].
     pub wheel_step: f32,
 }
 
@@ -61,7 +61,7 @@ impl Default for ClothDragSettings {
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct ClothDrag {
-    /// Who drags.
+    /// Pointer that drags.
     pub pointer: PointerId,
     /// Through which camera.
     pub camera: Entity,
@@ -87,7 +87,7 @@ pub struct ClothReleased {
     pub entity: Entity,
 }
 
-/// What was held of a cloth was pinned.
+/// Event: the held particles of a cloth were pinned.
 #[derive(EntityEvent, Clone, Debug, PartialEq, Eq, Reflect)]
 pub struct ClothPinned {
     /// The cloth.
@@ -101,7 +101,7 @@ pub struct ClothPinned {
 pub struct ClothUnpinned {
     /// The cloth.
     pub entity: Entity,
-    /// How many.
+    /// Number of pins.
     pub count: usize,
 }
 
@@ -124,7 +124,7 @@ impl Plugin for ClothDragPlugin {
     }
 }
 
-/// How far a ray goes until it is `depth` \[m\] away from the camera along its view direction.
+/// Length of a ray up to `depth` \[m\] from the camera along its view direction.
 fn at_depth(ray: &Ray3d, camera: &GlobalTransform, depth: f32) -> Option<Vec3> {
     let forward = *camera.forward();
     let along = ray.direction.dot(forward);
@@ -227,7 +227,7 @@ fn pin(
                 .filter(|i| (*i as usize) < particles.len() && !particles.is_pinned(*i as usize))
                 .collect();
             pins.pins.extend(held.iter().map(|&particle| ClothPin {
-                author: PinAuthor::User,
+                author: ClothPinAuthor::User,
                 ..ClothPin::at(particle, particles.position(particle as usize))
             }));
             commands.trigger(ClothPinned {

@@ -13,10 +13,10 @@
 //! # use bevy_math::Vec3;
 //! # use bevy_transform::components::GlobalTransform;
 //! # use tailorbird::{drawn::ClothDrawnHolds, prelude::*};
-//! # use tailorbird_cloth::attachment::AttachedParticles;
+//! # use tailorbird_cloth::attachment::ClothAttachedParticles;
 //! fn write_mesh(
 //!     mut cloths: Query<(
-//!         &GlobalTransform, &ClothTopology, &ClothParticles, &AttachedParticles, &mut ClothDrawnHolds,
+//!         &GlobalTransform, &ClothTopology, &ClothParticles, &ClothAttachedParticles, &mut ClothDrawnHolds,
 //!     )>,
 //!     places: Query<&GlobalTransform>,
 //! ) {
@@ -38,12 +38,12 @@ use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::AttachedParticles, frame::split_mirrored, particles::ClothParticles,
+    attachment::ClothAttachedParticles, frame::split_mirrored, particles::ClothParticles,
     topology::Topology,
 };
 use tailorbird_solver::points::Points;
 
-/// How much the particles of a cloth move along with what holds it when it is drawn. See the [module](self).
+/// Motion of a cloth's particles along with its holders when it is drawn. See the [module](self).
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothDrawnHolds {
@@ -57,7 +57,7 @@ pub struct ClothDrawnHolds {
     /// In storage order, in the cloth's frame \[m\]; empty where all are drawn where they are.
     #[reflect(ignore)]
     offsets: Points,
-    /// How each target moved from where the cloth is drawn to where it is now, in the cloth's frame.
+    /// Motion of each target from the time for which the cloth is drawn to the present one, in the cloth's frame.
     #[reflect(ignore)]
     motions: Vec<Option<Isometry3d>>,
 }
@@ -65,7 +65,7 @@ pub struct ClothDrawnHolds {
 /// A particle that is drawn at a point of a target.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    /// In storage order.
+    /// Index in storage order.
     particle: u32,
     target: u32,
     /// In the target's own space \[m\].
@@ -75,15 +75,15 @@ struct Held {
 /// A free particle that moves along.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
-    /// In storage order.
+    /// Index in storage order.
     particle: u32,
     target: u32,
-    /// 0 to 1.
+    /// Random number from 0 to 1.
     weight: f32,
 }
 
 impl ClothDrawnHolds {
-    /// How far along the sheet particles move along, as a part of the side of a square of the cloth's area [-].
+    /// Distance along the sheet within which particles move along, as a part of the side of a square of the cloth's area [-].
     pub const REACH: f32 = 0.6;
 
     /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
@@ -103,7 +103,7 @@ impl ClothDrawnHolds {
         (!self.is_still()).then_some(&self.offsets)
     }
 
-    /// Whether all particles are drawn where they are.
+    /// Returns whether all particles are drawn where they are.
     pub fn is_still(&self) -> bool {
         self.offsets.is_empty()
     }
@@ -114,7 +114,7 @@ impl ClothDrawnHolds {
         &mut self,
         topology: &Topology,
         particles: &ClothParticles,
-        attached: &AttachedParticles,
+        attached: &ClothAttachedParticles,
         place: &GlobalTransform,
         fraction: f32,
         now: impl Fn(Entity) -> Option<GlobalTransform>,
@@ -161,7 +161,8 @@ impl ClothDrawnHolds {
         }
     }
 
-    /// Whether all that is held is drawn so far from where it is that it was put elsewhere, and the cloth has not stepped since.
+    /// Returns whether all held particles are drawn so far from their places that they were put elsewhere, and the cloth has not stepped
+    /// since.
     fn all_leap(&self) -> bool {
         /// Further than anything runs in the time that cloth is late \[m\].
         const LEAP: f32 = 1.0;
@@ -195,7 +196,7 @@ impl ClothDrawnHolds {
         &mut self,
         topology: &Topology,
         particles: &ClothParticles,
-        attached: &AttachedParticles,
+        attached: &ClothAttachedParticles,
     ) {
         self.targets.clear();
         self.held.clear();
@@ -271,8 +272,7 @@ impl PartialOrd for Reached {
     }
 }
 
-/// How far it is along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite where it is
-/// further than `reach` \[m\].
+/// Distance along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite beyond `reach` \[m\].
 fn ways(topology: &Topology, from: impl Iterator<Item = u32>, reach: f32) -> Vec<f32> {
     let rest = &topology.rest_positions;
     let mut ways = vec![f32::INFINITY; rest.len()];

@@ -18,7 +18,7 @@
 //!     commands.spawn((
 //!         Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)).centered(),
 //!         ClothMaterial::cotton(),
-//!         ClothPins::corners(GridCorner::TOP),
+//!         ClothPins::corners(ClothCorner::TOP),
 //!         MeshMaterial3d(materials.add(Color::srgb(0.8, 0.1, 0.1))),
 //!         Transform::from_xyz(0.0, 1.25, 0.0),
 //!     ));
@@ -33,7 +33,7 @@
 //! | feature | what it adds | default |
 //! | --- | --- | --- |
 //! | `render` | meshes of cloths, cloths of meshes (`ClothFromMesh`), fabrics' looks: all that needs assets and Bevy's renderer | yes |
-//! | `picking` | pointers hit cloth (`ClothPickingPlugin`), drag and pin it (`ClothDragPlugin`); keys move balls (`SphereControlsPlugin`) | yes |
+//! | `picking` | pointers hit cloth (`ClothPickingPlugin`), drag and pin it (`ClothDragPlugin`); keys move balls (`ClothSphereControlsPlugin`) | yes |
 //! | `gizmos` | debug drawing (`ClothDebugPlugin`) | yes |
 //! | `diagnostics` | figures for Bevy's `DiagnosticsStore` (`ClothDiagnosticsPlugin`) | yes |
 //! | `motion_vectors` | for temporal antialiasing and motion blur (`ClothMotionVectorsPlugin`) | yes |
@@ -81,7 +81,7 @@ pub mod plugins;
 #[cfg(feature = "picking")]
 pub mod sphere_controls;
 
-/// What most games name.
+/// Names that most games need.
 pub mod prelude {
     #[cfg(feature = "gizmos")]
     pub use crate::debug::{ClothDebugPlugin, ClothGizmos};
@@ -97,14 +97,15 @@ pub mod prelude {
             ClothReleased, ClothUnpinned,
         },
         picking::{ClothPickingBackend, ClothPickingPlugin, ClothPickingSettings, ClothPointerHit},
-        sphere_controls::{SphereControls, SphereControlsPlugin},
+        sphere_controls::{ClothSphereControls, ClothSphereControlsPlugin},
     };
     #[cfg(feature = "render")]
     pub use crate::{
-        fabric::{ClothFabricPlugin, ClothLook, Fabric},
+        fabric::{ClothFabric, ClothFabricPlugin, ClothLook},
         mesh::{
-            ATTRIBUTE_CLOTH_PIN, ClothFromMesh, ClothMeshPlugin, ClothMeshSettings, ClothMeshWrite,
-            ClothUnseen, ColliderFromMesh, ColorChannel, MeshParts, MeshPins,
+            ATTRIBUTE_CLOTH_PIN, ClothColliderFromMesh, ClothColorChannel, ClothFromMesh,
+            ClothMeshParts, ClothMeshPins, ClothMeshPlugin, ClothMeshSettings, ClothMeshThreads,
+            ClothMeshWrite, ClothUnseen,
         },
     };
     pub use tailorbird_cloth::prelude::*;

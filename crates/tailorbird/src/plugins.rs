@@ -22,7 +22,7 @@ use crate::prelude::*;
 /// picking the parts that need them do nothing.
 ///
 /// None of them listens to mouse or keys. What does is added by name: [`ClothDragPlugin`] lets the pointer drag every cloth and a key pin
-/// it, [`SphereControlsPlugin`] lets keys move entities with [`SphereControls`].
+/// it, [`ClothSphereControlsPlugin`] lets keys move entities with [`ClothSphereControls`].
 pub struct ClothPlugins {
     schedule: Interned<dyn ScheduleLabel>,
 }

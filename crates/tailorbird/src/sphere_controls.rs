@@ -13,14 +13,14 @@ use bevy_reflect::prelude::*;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 
-/// Moves entities with [`SphereControls`] by keys.
-pub struct SphereControlsPlugin;
+/// Moves entities with [`ClothSphereControls`] by keys.
+pub struct ClothSphereControlsPlugin;
 
 /// Moves the entity along the world's axes by keys. Printing it prints the keys.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(SphereControlsState)]
-pub struct SphereControls {
+pub struct ClothSphereControls {
     /// Towards −x.
     pub key_left: KeyCode,
     /// Towards +x.
@@ -41,7 +41,7 @@ pub struct SphereControls {
     pub fast_speed: f32,
 }
 
-impl Default for SphereControls {
+impl Default for ClothSphereControls {
     fn default() -> Self {
         Self {
             key_left: KeyCode::ArrowLeft,
@@ -57,7 +57,7 @@ impl Default for SphereControls {
     }
 }
 
-impl fmt::Display for SphereControls {
+impl fmt::Display for ClothSphereControls {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -77,7 +77,7 @@ impl fmt::Display for SphereControls {
     }
 }
 
-impl SphereControls {
+impl ClothSphereControls {
     /// The velocity that these keys ask for [m/s].
     fn velocity(&self, keys: &ButtonInput<KeyCode>) -> Vec3 {
         let axis = |positive, negative| {
@@ -97,19 +97,19 @@ impl SphereControls {
     }
 }
 
-/// Where the entity was after the last two fixed steps. Written by this plugin alone.
+/// Positions of the entity after the last two fixed steps. Written by this plugin alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
 pub struct SphereControlsState {
     previous: Vec3,
     current: Vec3,
-    /// What was put into the `Transform` last; something else there was put there by somebody else.
+    /// Position that was put into the `Transform` last; another one there was put there by somebody else.
     drawn: Option<Vec3>,
 }
 
-impl Plugin for SphereControlsPlugin {
+impl Plugin for ClothSphereControlsPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<SphereControls>()
+        app.register_type::<ClothSphereControls>()
             .register_type::<SphereControlsState>()
             .add_systems(
                 FixedUpdate,
@@ -126,7 +126,11 @@ impl Plugin for SphereControlsPlugin {
 pub fn move_spheres(
     keys: Res<ButtonInput<KeyCode>>,
     time: Res<Time>,
-    mut spheres: Query<(&SphereControls, &mut SphereControlsState, &mut Transform)>,
+    mut spheres: Query<(
+        &ClothSphereControls,
+        &mut SphereControlsState,
+        &mut Transform,
+    )>,
 ) {
     for (controls, mut state, mut transform) in &mut spheres {
         if state.drawn != Some(transform.translation) {
@@ -144,7 +148,7 @@ pub fn move_spheres(
 /// Draws them between the last two fixed steps.
 pub fn draw_spheres(
     time: Res<Time<Fixed>>,
-    mut spheres: Query<(&mut SphereControlsState, &mut Transform), With<SphereControls>>,
+    mut spheres: Query<(&mut SphereControlsState, &mut Transform), With<ClothSphereControls>>,
 ) {
     for (mut state, mut transform) in &mut spheres {
         if state.drawn != Some(transform.translation) {

@@ -39,10 +39,10 @@ fn main() {
     });
 
     let edges = [
-        GridEdge::Top,
-        GridEdge::Bottom,
-        GridEdge::Left,
-        GridEdge::Right,
+        ClothEdge::Top,
+        ClothEdge::Bottom,
+        ClothEdge::Left,
+        ClothEdge::Right,
     ];
     let material = ClothMaterial::cotton();
     let side = 2.0;

@@ -43,7 +43,7 @@ pub(crate) struct BodyCollider {
     track: &'static TrackedPose,
 }
 
-/// What says where a collider is.
+/// Components that tell the pose of a collider.
 #[derive(bevy_ecs::query::QueryData)]
 pub(crate) struct Place {
     position: &'static Position,
@@ -53,7 +53,7 @@ pub(crate) struct Place {
 }
 
 impl PlaceItem<'_, '_> {
-    /// Where it is in the world, with its body where that is now.
+    /// Pose in the world, with the present pose of its body.
     pub(crate) fn pose(&self, body: Option<(Vec3, bevy_math::Quat)>) -> Isometry3d {
         match (body, self.in_body) {
             (Some((position, rotation)), Some(to)) => {
@@ -97,13 +97,13 @@ pub(crate) fn inverse_mass(
 }
 
 impl BodyItem<'_, '_> {
-    /// What cloth has to know of it, if cloth can push it at all.
-    fn for_cloth(&self, body: Entity) -> Option<ColliderBody> {
+    /// Properties of the body for cloth, if cloth can push it at all.
+    fn for_cloth(&self, body: Entity) -> Option<ClothColliderBody> {
         if !self.kind.is_dynamic() || self.disabled {
             return None;
         }
         let center_of_mass = self.position.0 + self.rotation.0 * self.center.0;
-        let still = ColliderBody {
+        let still = ClothColliderBody {
             body,
             inv_mass: Vec3::ZERO,
             inv_inertia: Mat3::ZERO,
@@ -116,7 +116,7 @@ impl BodyItem<'_, '_> {
         }
         let (inv_mass, inv_inertia) =
             inverse_mass(self.mass, self.inertia, self.rotation, self.locked);
-        Some(ColliderBody {
+        Some(ClothColliderBody {
             inv_mass,
             inv_inertia,
             linear_velocity: self.linear.0,
@@ -126,11 +126,11 @@ impl BodyItem<'_, '_> {
     }
 }
 
-/// Pushes avian's colliders that are near a cloth to [`ExternalColliders`].
+/// Pushes avian's colliders that are near a cloth to [`ClothExternalColliders`].
 pub(crate) fn push_colliders(
     mut cloths: ClothBoxes,
     mut cache: Local<ShapeCache<SharedShape>>,
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     default_friction: Res<DefaultFriction>,
     bodies: Query<Body>,
     mut loads: Query<&mut ClothLoad>,
@@ -194,7 +194,7 @@ pub(crate) fn push_colliders(
         let address = Arc::as_ptr(&shape.0).cast::<()>() as usize;
         let pieces = cache.pieces(address, shape, || shape::pieces(&**shape));
         for (part, piece) in pieces.iter().enumerate() {
-            external.push(ExternalCollider {
+            external.push(ClothExternalCollider {
                 entity: it.entity,
                 part: part as u32,
                 shape: piece.shape.clone(),

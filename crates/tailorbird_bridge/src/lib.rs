@@ -1,9 +1,9 @@
-//! What the bridges between cloth and physics engines have in common: which colliders are near a cloth, how they moved, what a
-//! push does to a body, and when it wakes one that sleeps.
+//! Common parts of the bridges between cloth and physics engines: colliders near a cloth and their motion, the effect of a push on a body,
+//! and the waking of sleeping bodies.
 //!
 //! Users take `tailorbird_avian` or `tailorbird_rapier`, which re-export what they need of this. A bridge to another engine is
 //! two systems of a hundred lines: one in [`ClothBridgeSystems::Collect`] that pushes the engine's colliders to
-//! [`ExternalColliders`](tailorbird_cloth::collider::ExternalColliders), one in [`ClothBridgeSystems::Apply`] that gives
+//! [`ClothExternalColliders`](tailorbird_cloth::collider::ClothExternalColliders), one in [`ClothBridgeSystems::Apply`] that gives
 //! bodies what [`ClothReactions`](tailorbird_cloth::collider::ClothReactions) says.
 
 mod load;

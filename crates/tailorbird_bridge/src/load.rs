@@ -1,4 +1,4 @@
-//! What cloth loads a body with, and when that wakes one that sleeps.
+//! Loads of bodies by cloth, and the waking of sleeping ones.
 //!
 //! A ball that sleeps on a sheet, or a crate that sleeps under a tablecloth, is under a steady push: the one that it fell asleep
 //! with, which the floor or its weight balances. So a push wakes a body when it differs from that one, as soon as the
@@ -14,9 +14,9 @@ use tailorbird_cloth::collider::ClothReaction;
 pub struct ClothLoad {
     /// Mean while awake: force \[N\], torque \[N m\].
     mean: (Vec3, Vec3),
-    /// What the difference from that would have given it while it sleeps [m/s], [rad/s].
+    /// Velocities that the difference from that would have given it while it sleeps [m/s], [rad/s].
     push: (Vec3, Vec3),
-    /// Whether it lies at a cloth that sleeps, which does not push meanwhile.
+    /// True if it lies at a sleeping cloth, which does not push meanwhile.
     pub at_rest: bool,
 }
 
@@ -31,7 +31,7 @@ pub struct SleepLimits {
     pub seconds: f32,
 }
 
-/// What a body that sleeps would do if it were awake: 1/mass along the axes of the world [1/kg], and the inverse inertia in world axes [1/(kg m²)].
+/// Inverse mass of a sleeping body if it were awake: along the axes of the world [1/kg], and the inverse inertia in world axes [1/(kg m²)].
 pub type InverseMass = (Vec3, Mat3);
 
 impl ClothLoad {

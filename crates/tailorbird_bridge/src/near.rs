@@ -1,4 +1,4 @@
-//! Which colliders are near a cloth.
+//! Broad phase: colliders near a cloth.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_math::{Isometry3d, Vec3};
@@ -55,7 +55,7 @@ impl WorldBox {
         }
     }
 
-    /// Whether the two have a point in common.
+    /// Returns whether the two have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
@@ -73,7 +73,7 @@ pub struct ClothBoxes<'w, 's> {
             Ref<'static, ClothParticles>,
             &'static ClothFrame,
             &'static ClothBounds,
-            &'static ClothRest,
+            &'static ClothSleepState,
         ),
         With<Cloth>,
     >,
@@ -106,18 +106,18 @@ impl ClothBoxes<'_, '_> {
         self.time.delta_secs()
     }
 
-    /// What is a hop of a collider [m/s]: the teleport speed of the settings.
+    /// Speed of a collider above which it hops [m/s]: the teleport speed of the settings.
     pub fn teleport_speed(&self) -> f32 {
         self.settings.teleport_speed
     }
 
-    /// Whether a collider that is in this box during the step may meet a cloth.
+    /// Returns whether a collider that is in this box during the step may meet a cloth.
     pub fn reach(&self, collider: WorldBox) -> bool {
         let collider = collider.grown(ROOM);
         self.boxes.iter().any(|(cloth, _)| cloth.meets(&collider))
     }
 
-    /// Whether a collider in this box lies at a cloth that sleeps, and does not push while it does.
+    /// Returns whether a collider in this box lies at a sleeping cloth, which does not push meanwhile.
     pub fn rest_on(&self, collider: WorldBox) -> bool {
         let collider = collider.grown(TOUCH);
         let mut asleep = self.boxes.iter().filter(|(_, asleep)| *asleep);

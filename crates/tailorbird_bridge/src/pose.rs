@@ -1,14 +1,14 @@
-//! Where colliders are, and where cloth moves bodies to.
+//! Poses of colliders, and of bodies that cloth moved.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use tailorbird_cloth::{collider::ClothReaction, sampling::HopDetector};
+use tailorbird_cloth::{collider::ClothReaction, sampling::ClothHopDetector};
 
-/// Where an engine's collider was after the last step, in the world, with what cloth moved it.
+/// Pose of an engine's collider after the last step, in the world, with its displacement by cloth.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct TrackedPose {
     pose: Option<Isometry3d>,
-    hops: HopDetector,
+    hops: ClothHopDetector,
 }
 
 impl TrackedPose {
@@ -22,9 +22,9 @@ impl TrackedPose {
         self.pose = finite.then_some(pose);
     }
 
-    /// Where the motion to `end` in a step of this length \[s\] began: the noted pose, or, for what hopped at this teleport speed [m/s]
-    /// ([`ClothSettings::teleport_speed`](tailorbird_cloth::prelude::ClothSettings::teleport_speed)), where it would have been had it been
-    /// put elsewhere and then moved on as before; `end` itself for what is new.
+    /// Pose at which the motion to `end` in a step of this length \[s\] began: the noted pose; for a collider that hopped at this teleport
+    /// speed [m/s] ([`ClothSettings::teleport_speed`](tailorbird_cloth::prelude::ClothSettings::teleport_speed)), the pose that it would
+    /// have had if it had been put elsewhere and then moved on as before; `end` itself for a new collider.
     pub fn start(&self, end: Isometry3d, seconds: f32, speed: f32) -> Isometry3d {
         let Some(start) = self.pose else {
             return end;
@@ -39,7 +39,7 @@ impl TrackedPose {
     }
 }
 
-/// Where a body's pose gets that cloth moved and turned about its centre of mass \[m\].
+/// Pose of a body that cloth displaced and turned about its centre of mass \[m\].
 pub fn moved(
     reaction: &ClothReaction,
     (position, rotation): (Vec3, Quat),

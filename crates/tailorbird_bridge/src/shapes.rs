@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use bevy_math::Isometry3d;
-use tailorbird_cloth::collider::ColliderShape;
+use tailorbird_cloth::collider::ClothColliderShape;
 
 /// Steps without a use after which a conversion is forgotten.
 const FORGET_AFTER: u64 = 128;
@@ -11,17 +11,17 @@ const FORGET_AFTER: u64 = 128;
 /// A part of an engine's shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Where it is in the whole \[m\].
+    /// Pose in the whole \[m\].
     pub at: Isometry3d,
-    /// What it is.
-    pub shape: ColliderShape,
-    /// How far its surface is rounded off beyond the shape \[m\].
+    /// Shape of the part.
+    pub shape: ClothColliderShape,
+    /// Distance by which its surface is rounded off beyond the shape \[m\].
     pub margin: f32,
 }
 
 impl Piece {
     /// A shape at a place.
-    pub fn new(at: Isometry3d, shape: ColliderShape) -> Self {
+    pub fn new(at: Isometry3d, shape: ClothColliderShape) -> Self {
         Self {
             at,
             shape,
@@ -86,7 +86,7 @@ impl<S: Clone> ShapeCache<S> {
         self.known.len()
     }
 
-    /// Whether none is known.
+    /// Returns whether no part is known.
     pub fn is_empty(&self) -> bool {
         self.known.is_empty()
     }
@@ -107,7 +107,7 @@ mod tests {
             cache.begin_step();
             let pieces = cache.pieces(Arc::as_ptr(&shape) as usize, &shape, || {
                 count += 1;
-                let shape = ColliderShape::Sphere { radius: *shape };
+                let shape = ClothColliderShape::Sphere { radius: *shape };
                 vec![Piece::new(Isometry3d::IDENTITY, shape)]
             });
             assert_eq!(pieces.len(), 1);

@@ -24,11 +24,11 @@ fn drop(mass: f32, substeps: u32, damping: f32, sleeps: bool) -> (World, Entity,
     (world, sheet, ball)
 }
 
-/// What a second of the ball's rest tells.
+/// Figures of a second of the ball's rest.
 struct Rest {
     /// Mean of the force that the sheet carries the ball with \[N\].
     force: Vec3,
-    /// What the sheet's momentum says that the pins carry \[N\].
+    /// Force on the pins by the sheet's momentum \[N\].
     pins: f32,
     /// Fastest way from step to step in this second [m/s]. The velocity itself holds what gravity takes away again in the
     /// next step.

@@ -9,7 +9,7 @@ use crate::world::{Body, Form, HZ, World};
 #[test]
 fn a_crate_goes_through_a_curtain_and_loses_speed() {
     let mut world = World::earth();
-    let pins = ClothPins::edges([GridEdge::Top]);
+    let pins = ClothPins::edges([ClothEdge::Top]);
     let at = Transform::from_xyz(0.0, 1.0, 0.0);
     let curtain = world.sheet(2.0, 32, ClothMaterial::cotton(), pins, at);
     let cube = world.body(&Body {

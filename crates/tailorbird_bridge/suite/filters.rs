@@ -1,4 +1,4 @@
-//! What cloth does not collide with, and what it does not wake.
+//! Filters: colliders that cloth does not meet, and bodies that it does not wake.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -6,7 +6,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::world::{Body, Contact, Form, G, HZ, World, lying};
 
-/// How far a sheet falls within a second over a box that would stop it after 0.2 m; the sheet has these layers.
+/// Distance that a sheet falls within a second over a box that would stop it after 0.2 m; the sheet has these layers.
 fn falls(contact: Contact, layers: Option<ClothLayers>) -> f32 {
     let mut world = World::earth();
     let pins = ClothPins::default();

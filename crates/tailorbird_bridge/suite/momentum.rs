@@ -6,8 +6,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::world::{Body, Form, HZ, World};
 
-/// How far linear and angular momentum get from what they were within 2 s, as parts of it, and which part of its speed the
-/// body keeps.
+/// Largest change of linear and angular momentum within 2 s, as parts of them, and the part of its speed that the body keeps.
 fn hit(body: &Body) -> [f64; 3] {
     let mut world = World::new(Vec3::ZERO);
     let material = ClothMaterial {

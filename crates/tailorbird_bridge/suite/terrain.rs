@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-/// How deep a point is below terrain of these triangles \[m\]; far above where it is not over any.
+/// Depth of a point below terrain of these triangles \[m\]; far above if it is not over any.
 pub fn depth(triangles: impl Iterator<Item = [Vec3; 3]>, point: Vec3) -> f32 {
     let flat = |v: Vec3| bevy_math::Vec2::new(v.x, v.z);
     let heights = triangles.filter_map(|[a, b, c]| {

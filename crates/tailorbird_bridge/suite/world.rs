@@ -17,7 +17,7 @@ pub const G: f32 = 9.81;
 /// Steps in a second.
 pub const HZ: u32 = 60;
 
-/// How a body moves.
+/// Kind of motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Kind {
     #[default]
@@ -49,7 +49,7 @@ pub enum Form {
     HalfSpace(Vec3),
 }
 
-/// What cloth and body have to do with each other.
+/// Kind of contact between cloth and body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Contact {
     #[default]
@@ -73,13 +73,13 @@ pub struct Body {
     pub velocity: Vec3,
     pub spin: Vec3,
     pub contact: Contact,
-    /// Whether the engine lets it sleep.
+    /// True if the engine lets it sleep.
     pub sleeps: bool,
-    /// Whether gravity pulls it.
+    /// True if gravity pulls it.
     pub falls: bool,
     /// Rate at which its motion decays [1/s].
     pub damping: f32,
-    /// Whether it moves up and down alone, and does not turn.
+    /// True if it moves up and down alone, and does not turn.
     pub on_rail: bool,
 }
 
@@ -108,7 +108,7 @@ impl Body {
     }
 }
 
-/// How a body moves at present, in the world.
+/// Present motion of a body, in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
     pub position: Vec3,
@@ -134,7 +134,7 @@ impl World {
             gravity,
             ..ClothSettings::default()
         })
-        .insert_resource(Wind::vacuum());
+        .insert_resource(ClothWind::vacuum());
         let step = std::time::Duration::from_secs(1) / HZ;
         app.insert_resource(TimeUpdateStrategy::ManualDuration(step));
         app.insert_resource(Time::<Fixed>::from_duration(step));
@@ -197,7 +197,7 @@ impl World {
         self.app.world().get(cloth).unwrap()
     }
 
-    /// Where the particles of a cloth are, in the world \[m\].
+    /// Positions of the particles of a cloth, in the world \[m\].
     pub fn points(&self, cloth: Entity) -> Vec<Vec3> {
         let frame = self.app.world().get::<ClothFrame>(cloth).unwrap();
         let particles = self.particles(cloth);
@@ -210,7 +210,7 @@ impl World {
         (0..particles.len()).map(|i| particles.mass(i)).sum()
     }
 
-    /// What is wrong with a cloth.
+    /// Complaint about a cloth.
     pub fn complaint(&self, cloth: Entity) -> Option<String> {
         let status = self.app.world().get::<ClothStatus>(cloth).unwrap();
         let lost = || self.points(cloth).iter().position(|p| !p.is_finite());
@@ -226,7 +226,7 @@ impl World {
             .copied()
     }
 
-    /// How deep the deepest particle is inside a body \[m\]; negative where all are outside.
+    /// Depth of the deepest particle inside a body \[m\]; negative if all are outside.
     pub fn depth(&self, cloth: Entity, body: Entity) -> f32 {
         let motion = self.motion(body);
         let at = Isometry3d::new(motion.position, motion.rotation).inverse();
@@ -259,10 +259,10 @@ impl World {
 /// All edges of a sheet.
 pub fn all_edges() -> ClothPins {
     ClothPins::edges([
-        GridEdge::Top,
-        GridEdge::Bottom,
-        GridEdge::Left,
-        GridEdge::Right,
+        ClothEdge::Top,
+        ClothEdge::Bottom,
+        ClothEdge::Left,
+        ClothEdge::Right,
     ])
 }
 

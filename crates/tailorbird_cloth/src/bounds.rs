@@ -1,17 +1,16 @@
 //! The box around a cloth.
 
+mod update;
+
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::bounds::Bounds;
 
-use crate::{
-    cloth::Cloth,
-    particles::ClothParticles,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
-    step::ClothStep,
-};
+pub use update::update_bounds;
+
+use crate::particles::ClothParticles;
 
 /// The box, in the cloth's frame, around all particles after the last two steps, and so around everything interpolated
 /// between. Written by [`update_bounds`], and where nobody sees the
@@ -26,36 +25,20 @@ pub struct ClothBounds {
 }
 
 impl ClothBounds {
-    /// Whether a point lies inside or on the box.
+    /// Returns whether a point lies inside or on the box.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 }
 
-/// Computes the boxes of all cloths.
-pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.update_bounds(step.level());
-    });
-}
-
-impl ClothStagesItem<'_, '_> {
-    /// What [`update_bounds`] does for one cloth.
-    pub(crate) fn update_bounds(&mut self, level: Level) {
-        if let Some(bounds) = ClothBounds::around(level, &self.particles) {
-            self.bounds.set_if_neq(bounds);
-        }
-    }
-}
-
 impl ClothBounds {
-    /// The box around all particles, now and a step ago; `None` where there are none.
+    /// Box around all particles, now and a step ago; `None` without particles.
     pub(crate) fn around(level: Level, particles: &ClothParticles) -> Option<Self> {
         let Bounds { min, max } = Bounds::around(level, particles)?;
         Some(Self { min, max })
     }
 
-    /// The box as the solver has it.
+    /// Box in the form of the solver.
     pub(crate) fn bounds(self) -> Bounds {
         let Self { min, max } = self;
         Bounds { min, max }

@@ -7,9 +7,9 @@ use bevy_transform::prelude::Transform;
 use tailorbird_solver::topology::Topology;
 
 use crate::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
-    error::{ClothStatus, ShapeError},
+    error::{ClothShapeError, ClothStatus},
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
@@ -18,8 +18,8 @@ use crate::{
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
     pins::ClothPins,
-    sampling::SampledMotion,
-    sleep::{ClothRest, ClothSeen, ClothSleep},
+    sampling::ClothSampledMotion,
+    sleep::{ClothSeen, ClothSleep, ClothSleepState},
     solver::ClothSolver,
     tethers::ClothTethers,
     topology::ClothTopology,
@@ -46,16 +46,16 @@ pub use tailorbird_solver::shape::ClothShape;
     ClothSolver,
     ClothInertia,
     ClothSleep,
-    ClothRest,
+    ClothSleepState,
     ClothSeen,
     ClothTethers,
-    AttachedParticles,
+    ClothAttachedParticles,
     ClothTopology,
     ClothFrame,
     ClothParticles,
     ClothNormals,
     ClothBounds,
-    SampledMotion,
+    ClothSampledMotion,
     Transform
 )]
 pub struct Cloth {
@@ -64,7 +64,7 @@ pub struct Cloth {
 }
 
 impl Cloth {
-    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
+    /// Distance \[m\] at which the vertices of a mesh are welded, unless another is set.
     pub const WELD_DISTANCE: f32 = ClothShape::WELD_DISTANCE;
 
     /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner lies at the
@@ -76,11 +76,11 @@ impl Cloth {
         }
     }
 
-    /// As [`Cloth::grid`], checked.
+    /// Checked form of [`Cloth::grid`].
     ///
     /// # Errors
-    /// [`ShapeError::Size`], [`ShapeError::Resolution`].
-    pub fn try_grid(size: Vec2, resolution: UVec2) -> Result<Self, ShapeError> {
+    /// [`ClothShapeError::Size`], [`ClothShapeError::Resolution`].
+    pub fn try_grid(size: Vec2, resolution: UVec2) -> Result<Self, ClothShapeError> {
         let cloth = Self::grid(size, resolution);
         cloth.shape.check()?;
         Ok(cloth)
@@ -94,15 +94,15 @@ impl Cloth {
         }
     }
 
-    /// As [`Cloth::mesh`], checked.
+    /// Checked form of [`Cloth::mesh`].
     ///
     /// # Errors
-    /// [`ShapeError::NoTriangles`], [`ShapeError::IndexCount`], [`ShapeError::IndexOutOfRange`],
-    /// [`ShapeError::NonFinitePosition`], [`ShapeError::PositionTooFar`].
+    /// [`ClothShapeError::NoTriangles`], [`ClothShapeError::IndexCount`], [`ClothShapeError::IndexOutOfRange`], [`ClothShapeError::NonFinitePosition`],
+    /// [`ClothShapeError::PositionTooFar`].
     pub fn try_mesh(
         positions: impl Into<Vec<Vec3>>,
         indices: impl Into<Vec<u32>>,
-    ) -> Result<Self, ShapeError> {
+    ) -> Result<Self, ClothShapeError> {
         let cloth = Self::mesh(positions, indices);
         Topology::build(&cloth.shape, Vec3::ONE)?;
         Ok(cloth)
@@ -132,11 +132,19 @@ impl Cloth {
         self.shape.resolution()
     }
 
-    /// Where the particles lie at rest, in the entity's own space \[m\]: their order is that of the particles.
+    /// Positions of the particles at rest, in the entity's own space \[m\], in the order of the particles.
     ///
-    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded
-    /// vertex, without those of no triangle. Empty when the shape is invalid.
+    /// For a grid particle `row · columns + column`; for a mesh in order of first appearance of each welded vertex, without those of no
+    /// triangle. Empty when the shape is invalid.
     pub fn rest_positions(&self) -> Vec<Vec3> {
         self.shape.rest_positions()
+    }
+}
+
+impl ClothPins {
+    /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
+    pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
+        let rest = cloth.rest_positions();
+        Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))
     }
 }

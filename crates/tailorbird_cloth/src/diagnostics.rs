@@ -9,11 +9,11 @@ use tailorbird_solver::{topology::Topology, wall_clock::WallClock};
 
 use crate::particles::ClothParticles;
 
-/// How long the last step took. Written by the cloth systems alone.
+/// Duration of the last step. Written by the cloth systems alone.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothStepTime {
-    /// All substeps; with wind, normals, boxes and checks where nobody has systems in
+    /// Time of all substeps; with wind, normals, boxes and checks if nobody has systems in
     /// [`ClothSubstep`](crate::schedule::ClothSubstep).
     pub simulate: Duration,
     /// The whole step, from the first system of [`ClothSystems::Prepare`](crate::schedule::ClothSystems) to the last of
@@ -33,9 +33,9 @@ pub(crate) fn stop_clock(mut time: ResMut<ClothStepTime>) {
     time.total = time.start.map_or(Duration::ZERO, |start| start.elapsed());
 }
 
-/// How far the edges of a cloth are stretched: l/L − 1 over its stretch constraints [-].
+/// Stretch of the edges of a cloth: l/L − 1 over its stretch constraints [-].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-pub struct Stretch {
+pub struct ClothStretch {
     /// Mean of max(0, l/L − 1).
     pub mean: f32,
     /// The value that 99 % of the edges do not exceed.
@@ -45,8 +45,8 @@ pub struct Stretch {
 }
 
 impl ClothParticles {
-    /// How far the edges are stretched. Zero for a cloth without edges.
-    pub fn stretch(&self, topology: &Topology) -> Stretch {
+    /// Stretch of the edges. Zero for a cloth without edges.
+    pub fn stretch(&self, topology: &Topology) -> ClothStretch {
         let mut values: Vec<f32> = topology
             .stretch_edges()
             .into_iter()
@@ -62,14 +62,14 @@ impl ClothParticles {
             })
             .collect();
         if values.is_empty() {
-            return Stretch::default();
+            return ClothStretch::default();
         }
         let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
         let mean = (sum / values.len() as f64) as f32;
         let at = (values.len() * 99 / 100).min(values.len() - 1);
         let (_, p99, above) = values.select_nth_unstable_by(at, f32::total_cmp);
         let max = above.iter().copied().fold(*p99, f32::max);
-        Stretch {
+        ClothStretch {
             mean,
             p99: *p99,
             max,

@@ -2,6 +2,7 @@
 //!
 //! ![A banner on a boat that pitches and rolls](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/banner.gif)
 
+mod prepare;
 mod split;
 
 use std::ops::Deref;
@@ -9,44 +10,38 @@ use std::ops::Deref;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3, Vec3A};
 use bevy_reflect::prelude::*;
+use tailorbird_solver::frame::Frame;
 
+pub use prepare::{advance_frames, prepare_frames};
 pub(crate) use split::split;
 pub use split::split_mirrored;
-use split::{check_shear, split_like};
-use tailorbird_solver::{frame::Frame, step::ADVANCE};
 
 use crate::{
-    cloth::Cloth,
-    collider::ClothColliders,
-    error::{ClothStatus, ErrorSource},
-    inertia::{ClothInertia, TeleportMode},
-    particles::ClothParticles,
-    sampling::{SampledMotion, SampledPoses, excess},
-    stages::{ClothStages, run_stage},
-    step::ClothStep,
+    inertia::{ClothInertia, ClothTeleportMode},
+    sampling::excess,
 };
 
 /// The rigid frame that a cloth's particles live in: translation and rotation of the entity. Scale is part of the rest
 /// shape instead.
 ///
-/// Where the entity moves, the frame moves with it, evenly over the substeps, and pins with the frame. Free particles
+/// If the entity moves, the frame moves with it, evenly over the substeps, and pins with the frame. Free particles
 /// keep their place in the world: they are expressed in the moved frame. So a cloth far from the world's origin is
 /// as precise as one at it.
 #[derive(Component, Clone, Copy, Debug, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothFrame {
-    /// Where it is, and its path in this step.
+    /// Pose, and path in this step.
     pub(crate) frame: Frame,
     pub(crate) scale: Vec3,
     pub(crate) placed: bool,
     /// The last valid one.
     inertia: ClothInertia,
-    /// What was felt of the last step [m/s].
+    /// Part of the velocity in the last step that was felt [m/s].
     velocity: Vec3,
-    /// Whether the cloth goes where its entity goes, and feels nothing of it.
+    /// True if the cloth goes where its entity goes, and feels nothing of it.
     pub(crate) carries: bool,
-    asked: Option<TeleportMode>,
-    teleported: Option<TeleportMode>,
+    asked: Option<ClothTeleportMode>,
+    teleported: Option<ClothTeleportMode>,
 }
 
 impl Default for ClothFrame {
@@ -81,22 +76,22 @@ impl ClothFrame {
     /// The entity is put elsewhere, and its cloth with it: whatever way the entity goes until the next step, the cloth does not
     /// feel it. So with its parents, and with whatever else hangs on those.
     /// [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done. What holds the cloth without being a parent is told by
-    /// [`SampledMotion::teleport`](crate::sampling::SampledMotion::teleport).
-    pub fn teleport(&mut self, mode: TeleportMode) {
+    /// [`ClothSampledMotion::teleport`](crate::sampling::ClothSampledMotion::teleport).
+    pub fn teleport(&mut self, mode: ClothTeleportMode) {
         self.asked = Some(mode);
     }
 
-    /// Whether [`Self::teleport`] was called since the last step.
+    /// Returns whether [`Self::teleport`] was called since the last step.
     pub(crate) fn is_asked(&self) -> bool {
         self.asked.is_some()
     }
 
-    /// What became of the cloth, where it was put elsewhere in this step.
-    pub(crate) fn take_teleport(&mut self) -> Option<TeleportMode> {
+    /// Teleport of the cloth in this step, if there was one.
+    pub(crate) fn take_teleport(&mut self) -> Option<ClothTeleportMode> {
         self.teleported.take()
     }
 
-    /// The same for what holds the cloth: a cloth that its entity carries was put elsewhere with it, whatever its holder did.
+    /// Start of the step for a holder: a cloth that its entity carries was put elsewhere with it, whatever its holder did.
     pub(crate) fn start_for(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
         match self.frame.jump {
             Some(jump) if self.carries => jump * start,
@@ -159,79 +154,4 @@ impl ClothFrame {
         self.frame.current = self.frame.start;
         self.frame.offset = Vec3::ZERO;
     }
-}
-
-/// Reads where the entities of the cloths are.
-///
-/// A transform that is not finite is reported, and the frame stays where it was. One that is sheared is reported, and the frame follows
-/// it without the shear.
-pub fn prepare_frames(
-    step: Res<ClothStep>,
-    poses: SampledPoses,
-    mut cloths: Query<
-        (
-            Entity,
-            &SampledMotion,
-            &mut ClothFrame,
-            Ref<ClothInertia>,
-            &ClothParticles,
-            &mut ClothStatus,
-        ),
-        With<Cloth>,
-    >,
-    commands: ParallelCommands,
-) {
-    // A pause keeps what moves meanwhile from being felt, and from being a teleport.
-    let seconds = if step.running() {
-        [step.world_seconds(), step.seconds()]
-    } else {
-        [f32::INFINITY; 2]
-    };
-    for (entity, own, mut frame, inertia, particles, mut status) in &mut cloths {
-        if inertia.is_changed() {
-            let errors = inertia.errors();
-            if errors.is_empty() {
-                frame.inertia = *inertia;
-            }
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Inertia, errors);
-        }
-        let Ok(pose) = poses.get(entity) else {
-            continue;
-        };
-        let holds = particles.input.held.any_in_frame();
-        let how = (pose.teleported, holds);
-        let known = (frame.scale, frame.frame.end.rotation);
-        let [first, last] = own.scales();
-        let error = match split_like(&pose.end, last, known) {
-            Ok((end, scale)) => {
-                let start = split_like(&pose.start, first, known).map_or(end, |(start, _)| start);
-                frame.set_scale(scale);
-                frame.place([start, end], how, seconds);
-                check_shear(&pose.end)
-            }
-            Err(error) => {
-                let stay = frame.frame.end;
-                if frame.placed {
-                    frame.place([stay; 2], (false, holds), seconds);
-                }
-                Some(error)
-            }
-        };
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ErrorSource::Transform,
-            error,
-        );
-    }
-}
-
-/// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
-/// target.
-pub fn advance_frames(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(ADVANCE, &step, &colliders, &mut cloths);
 }

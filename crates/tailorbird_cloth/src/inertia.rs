@@ -1,4 +1,4 @@
-//! How much of its entity's motion a cloth feels.
+//! Inertia of a cloth: the part of its entity's motion that it feels.
 //!
 //! ![A cape on somebody who runs and jumps](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/cape.gif)
 //!
@@ -13,7 +13,7 @@
 //! # fn spawn(mut commands: Commands) {
 //! commands.spawn((
 //!     Cloth::grid(Vec2::new(0.8, 1.2), UVec2::new(32, 48)),
-//!     ClothPins::edges([GridEdge::Top]),
+//!     ClothPins::edges([ClothEdge::Top]),
 //!     ClothInertia {
 //!         // Half of the way and of the turns, and nothing beyond a fast run.
 //!         linear: 0.5,
@@ -35,26 +35,27 @@
 //! fn respawn(mut capes: Query<(&mut Transform, &mut ClothFrame)>) {
 //!     for (mut transform, mut frame) in &mut capes {
 //!         transform.translation = Vec3::ZERO;
-//!         frame.teleport(TeleportMode::Reset);
+//!         frame.teleport(ClothTeleportMode::Reset);
 //!     }
 //! }
 //! ```
+
+mod reset;
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use tailorbird_solver::frame::{Felt, shortest};
 
-use crate::{
-    cloth::Cloth, error::ClothErrorKind, frame::ClothFrame, particles::ClothParticles,
-    sleep::ClothRest, topology::ClothTopology,
-};
+pub use reset::reset_teleported;
 
-/// How much of its entity's motion a cloth feels, and what counts as a teleport. Change it at any time.
+use crate::error::ClothErrorKind;
+
+/// The part of its entity's motion that a cloth feels, and the bounds of a teleport. Change it at any time.
 ///
-/// The motion of the cloth's own entity counts, and of its parents: what a cloth is merely attached to does not.
+/// The motion of the cloth's own entity counts, and of its parents; that of an entity to which the cloth is merely attached does not.
 ///
-/// What is not felt carries the cloth along without giving it velocity; wind and colliders then act on it as they would if the
+/// Motion that is not felt carries the cloth along without giving it velocity; wind and colliders then act on it as they would if the
 /// entity stood still.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
@@ -69,13 +70,13 @@ pub struct ClothInertia {
     /// Part of the centrifugal acceleration of the turning that is *not* felt that acts all the same [-], so that a skirt
     /// rises in a turn that carries it along. At least 0; 1 is physics.
     pub centrifugal: f32,
-    /// What the entity moves faster than this [m/s] is not felt.
+    /// Largest speed of the entity that the cloth feels [m/s]; the excess is not felt.
     #[cfg_attr(
         feature = "serialize",
         serde(deserialize_with = "crate::unbounded::number")
     )]
     pub max_speed: f32,
-    /// What the entity turns faster than this [rad/s] is not felt.
+    /// Largest angular speed of the entity that the cloth feels [rad/s]; the excess is not felt.
     #[cfg_attr(
         feature = "serialize",
         serde(deserialize_with = "crate::unbounded::number")
@@ -94,35 +95,36 @@ pub struct ClothInertia {
         serde(deserialize_with = "crate::unbounded::number")
     )]
     pub teleport_angle: f32,
-    /// What happens to the cloth where it is.
-    pub teleport: TeleportMode,
+    /// Treatment of the cloth on a teleport.
+    pub teleport: ClothTeleportMode,
 }
 
-/// What becomes of a cloth whose entity is put elsewhere.
+/// Treatment of a cloth whose entity is put elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum TeleportMode {
-    /// It is carried along as it is, and what velocity it has turns with it.
+pub enum ClothTeleportMode {
+    /// The cloth is carried along as it is, and its velocity turns with it.
     #[default]
     KeepShape,
-    /// It is put into its rest shape, without velocity; pins hold where they hold.
+    /// The cloth is put into its rest shape, without velocity; pins hold where they hold.
     Reset,
 }
 
 /// A cloth was put elsewhere, with its entity or what holds it: because its [`ClothInertia`] says so of a motion like that, by a hop
-/// ([`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed)), or by [`ClothFrame::teleport`].
+/// ([`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed)), or by
+/// [`ClothFrame::teleport`](crate::frame::ClothFrame::teleport).
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 pub struct ClothTeleported {
     /// The cloth.
     pub entity: Entity,
-    /// What became of it.
-    pub mode: TeleportMode,
+    /// Treatment of the cloth.
+    pub mode: ClothTeleportMode,
 }
 
 impl Default for ClothInertia {
-    /// All of the motion, without limits but that of [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed).
+    /// Feels all of the motion, without limits but that of [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed).
     fn default() -> Self {
         Self {
             linear: 1.0,
@@ -132,7 +134,7 @@ impl Default for ClothInertia {
             max_angular_speed: f32::INFINITY,
             teleport_speed: f32::INFINITY,
             teleport_angle: f32::INFINITY,
-            teleport: TeleportMode::KeepShape,
+            teleport: ClothTeleportMode::KeepShape,
         }
     }
 }
@@ -148,7 +150,7 @@ impl ClothInertia {
         }
     }
 
-    /// What is wrong with these values.
+    /// Errors in these values.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let part = |field: &str, value| {
             let field = format!("ClothInertia.{field}");
@@ -182,14 +184,14 @@ impl ClothInertia {
         .collect()
     }
 
-    /// Whether an entity that goes from one place to another in a step of this length \[s\] is put elsewhere.
+    /// Returns whether an entity that goes from one place to another in a step of this length \[s\] is put elsewhere.
     pub(crate) fn is_teleport(&self, from: Isometry3d, to: Isometry3d, seconds: f32) -> bool {
         let way = from.translation.distance(to.translation);
         way > self.teleport_speed * seconds
             || from.rotation.angle_between(to.rotation) > self.teleport_angle
     }
 
-    /// How much of a motion in a step of this length \[s\], for the world and for the cloth, is felt.
+    /// Part of a motion that is felt, in a step of this length \[s\] for the world and for the cloth.
     pub(crate) fn felt(
         &self,
         from: Isometry3d,
@@ -217,31 +219,5 @@ impl ClothInertia {
             angular,
             spin: self.centrifugal.sqrt() * carried,
         }
-    }
-}
-
-/// Puts cloths that were teleported with [`TeleportMode::Reset`] into their rest shape.
-pub fn reset_teleported(
-    mut cloths: Query<
-        (
-            Entity,
-            &mut ClothFrame,
-            &ClothTopology,
-            &mut ClothParticles,
-            &mut ClothRest,
-        ),
-        With<Cloth>,
-    >,
-    mut commands: Commands,
-) {
-    for (entity, mut frame, topology, mut particles, mut rest) in &mut cloths {
-        let Some(mode) = frame.bypass_change_detection().take_teleport() else {
-            continue;
-        };
-        if mode == TeleportMode::Reset {
-            particles.0.reset_to_rest(topology);
-            rest.wake();
-        }
-        commands.trigger(ClothTeleported { entity, mode });
     }
 }

@@ -13,7 +13,7 @@
 //! app.world_mut().spawn((
 //!     Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48)),
 //!     ClothMaterial::cotton(),
-//!     ClothPins::corners([GridCorner::TopLeft, GridCorner::TopRight]),
+//!     ClothPins::corners([ClothCorner::TopLeft, ClothCorner::TopRight]),
 //! ));
 //! app.update();
 //! ```
@@ -33,9 +33,9 @@
 //! - of a cloth: its shape, material, pins, painted weights, shading, solver, inertia and sleep settings, motion constraints and
 //!   targets;
 //! - colliders of all shapes, and layers;
-//! - attachments, with what they belong to and what holds them: [`AttachmentOf`](attachment::AttachmentOf) and
-//!   [`AttachedTo`](attachment::AttachedTo), which name entities and are mapped when a world is read;
-//! - zones of wind, and the resources [`ClothSettings`](settings::ClothSettings) and [`Wind`](wind::Wind).
+//! - attachments, with what they belong to and what holds them: [`ClothAttachmentOf`](attachment::ClothAttachmentOf) and
+//!   [`ClothAttachedTo`](attachment::ClothAttachedTo), which name entities and are mapped when a world is read;
+//! - zones of wind, and the resources [`ClothSettings`](settings::ClothSettings) and [`ClothWind`](wind::ClothWind).
 //!
 //! Not what the simulation makes of it: particles, velocities, normals, sleep, [`ClothStatus`](error::ClothStatus). A cloth that
 //! is read is built anew and starts at rest. Nor what lasts for a moment: [`ClothForces`](forces::ClothForces), which act for a step,
@@ -73,6 +73,7 @@ pub mod schedule;
 pub mod settings;
 pub mod sleep;
 pub mod slow_build;
+pub mod snapshot;
 pub mod solver;
 pub mod stages;
 pub mod step;
@@ -91,39 +92,44 @@ pub use tailorbird_solver::{numbers, points, wall_clock};
 pub mod prelude {
     pub use crate::{
         attachment::{
-            AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf, AttachmentOffset,
-            Attachments, BreakReason, ClothAttachment, ClothAttachments,
+            ClothAttachedTo, ClothAttachment, ClothAttachmentBroken, ClothAttachmentForce,
+            ClothAttachmentOf, ClothAttachmentOffset, ClothAttachments, ClothAttachmentsHeld,
+            ClothBreakReason,
         },
         bounds::ClothBounds,
         cloth::{Cloth, ClothShape},
         collider::{
-            ClothCollider, ClothLayers, ClothReactions, ColliderBody, ColliderShape,
-            ExternalCollider, ExternalColliders,
+            ClothCollider, ClothColliderBody, ClothColliderShape, ClothExternalCollider,
+            ClothExternalColliders, ClothLayers, ClothReactions,
         },
-        diagnostics::{ClothStepTime, Stretch},
-        error::{ClothError, ClothErrorKind, ClothStatus, ShapeError},
+        diagnostics::{ClothStepTime, ClothStretch},
+        error::{ClothError, ClothErrorKind, ClothShapeError, ClothStatus},
         forces::ClothForces,
         frame::ClothFrame,
         grab::ClothGrab,
-        inertia::{ClothInertia, ClothTeleported, TeleportMode},
+        inertia::{ClothInertia, ClothTeleportMode, ClothTeleported},
         material::ClothMaterial,
-        motion::{ClothMotionConstraints, ClothMotionTargets, PerParticle, TargetSpace},
+        motion::{ClothMotionConstraints, ClothMotionTargets, ClothPerParticle, ClothTargetSpace},
         normals::{ClothNormals, ClothShading},
         particles::ClothParticles,
-        pins::{ClothPin, ClothPins, GridCorner, GridEdge, PinAuthor, PinSelection},
+        pins::{ClothCorner, ClothEdge, ClothPin, ClothPinAuthor, ClothPins, ClothSelection},
         plugin::ClothPlugin,
         query::ClothHit,
         reaction::ClothPinForces,
-        sampling::{SampledMotion, Teleported},
+        sampling::{ClothMotionTeleported, ClothSampledMotion},
         schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems},
-        settings::{ClothSettings, InstructionSet},
-        sleep::{ClothRest, ClothSeen, ClothSleep},
-        solver::ClothSolver,
+        settings::{ClothInstructionSet, ClothSettings},
+        sleep::{ClothSeen, ClothSleep, ClothSleepState},
+        snapshot::ClothSnapshot,
+        solver::{ClothSolver, ClothSubsteps},
         step::ClothStep,
         substep::{SubstepCloth, SubstepCloths, SubstepContact},
-        topology::{ClothTopology, report::MeshReport},
+        topology::{ClothTopology, report::ClothMeshReport},
         validate::ClothReset,
         weights::ClothWeights,
-        wind::{BlowingWind, Gusts, Turbulence, Wind, WindModel, WindShape, WindZone},
+        wind::{
+            ClothGusts, ClothTurbulence, ClothWind, ClothWindModel, ClothWindShape, ClothWindState,
+            ClothWindZone,
+        },
     };
 }

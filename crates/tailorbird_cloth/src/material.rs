@@ -1,4 +1,4 @@
-//! What a cloth is made of: how heavy, how stiff, how rough, how it takes the air.
+//! Material of a cloth: its weight, stiffness, friction and drag.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -45,14 +45,14 @@
 //! # Traps
 //!
 //! The chain solver relaxes bending and shear once in a substep, so they hold up to a limit (σ areal density, L spacing of the particles, h
-//! substep): a bending rigidity of about σ L⁴/(6 h²) and a shear stiffness of about σ L²/(2 h²). What is stiffer acts as that, and so a
+//! substep): a bending rigidity of about σ L⁴/(6 h²) and a shear stiffness of about σ L²/(2 h²). A stiffer fabric acts as one at the limit, and so a
 //! stiff fabric gets softer as the resolution grows. With 8 substeps at 60 Hz a spacing of 10 mm holds bending lengths up to 34 mm, that is,
 //! all presets; one of 5 mm up to 13 mm. More [substeps](crate::settings::ClothSettings::substeps) or fewer particles lift both.
 //!
 //! A fabric that stretches is held by its [tethers](crate::tethers) beyond 20 times the strain by its own weight: rubber that hangs on
 //! pins gets no longer than that, whatever pulls.
 //!
-//! What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus); the masses stay what they were.
+//! Errors are reported in [`ClothStatus`](crate::error::ClothStatus); the masses then stay as they were.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -66,7 +66,7 @@ const OUNCE_PER_SQUARE_YARD: f32 = 0.033_905_75;
 /// Kilograms per square metre in one momme, the unit in which silk is sold: 4.340 g/m².
 const MOMME: f32 = 0.004_34;
 
-/// What a cloth is made of. Change it at any time.
+/// Material of a cloth. Change it at any time.
 ///
 /// Stiffness is given as its inverse, so that 0 is rigid, and for the fabric, not for a spring: it does not depend on the
 /// resolution. A band of width b and length l that is pulled with the force F along the warp gets longer by
@@ -266,7 +266,7 @@ impl ClothMaterial {
         ]
     }
 
-    /// What the solver knows of it.
+    /// Coefficients for the solver.
     pub(crate) fn coefficients(&self) -> Coefficients {
         Coefficients {
             areal_density: self.areal_density,
@@ -290,7 +290,7 @@ impl ClothMaterial {
         }
     }
 
-    /// What is wrong with this material.
+    /// Errors of this material.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
         // Asked in every step, so that names are put together for wrong values alone.

@@ -1,23 +1,15 @@
 //! Normals for shading.
 
+mod recompute;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Mat3, Quat, Vec3};
 use bevy_reflect::prelude::*;
-use fearless_simd::Level;
-use tailorbird_solver::{
-    kernels::{lanes::SharedPoints, normals, rigid},
-    points::Points,
-    topology::Topology,
-    workers::Workers,
-};
+use tailorbird_solver::{kernels::rigid, points::Points, topology::Topology};
 
-use crate::{
-    cloth::Cloth,
-    stages::{ClothStages, ClothStagesItem, for_each_cloth},
-    step::ClothStep,
-};
+pub use recompute::recompute_normals;
 
-/// Which normals a cloth is shaded with.
+/// Normals that a cloth is shaded with.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -43,7 +35,7 @@ pub struct ClothNormals {
 }
 
 impl ClothNormals {
-    /// What each normal belongs to.
+    /// Shading: particles or triangles that the normals belong to.
     pub fn shading(&self) -> ClothShading {
         self.shading
     }
@@ -53,12 +45,12 @@ impl ClothNormals {
         self.current.len()
     }
 
-    /// What the normals take on the heap \[byte\].
+    /// Heap memory of the normals \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.current.memory_bytes() + self.previous.memory_bytes()
     }
 
-    /// Whether there are none yet.
+    /// Returns whether there are none yet.
     pub fn is_empty(&self) -> bool {
         self.current.is_empty()
     }
@@ -87,17 +79,6 @@ impl ClothNormals {
     }
 }
 
-/// Computes the normals of all cloths.
-pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_cloth(&step, &mut cloths, &|mut cloth| {
-        if cloth.rest.is_asleep() {
-            cloth.renew(step.level());
-        } else {
-            cloth.recompute_normals(step.level(), Workers::ALONE);
-        }
-    });
-}
-
 impl ClothNormals {
     /// Turns all of them.
     pub(crate) fn turn(&mut self, by: Quat) {
@@ -108,62 +89,5 @@ impl ClothNormals {
 
     fn are_stale(&self, topology: &Topology, shading: ClothShading) -> bool {
         self.revision != topology.revision || self.shading != shading
-    }
-}
-
-impl ClothStagesItem<'_, '_> {
-    /// Computes the normals and the box of one that sleeps where it was rebuilt, or is shaded in another way.
-    pub(crate) fn renew(&mut self, level: Level) {
-        if self.normals.are_stale(self.topology, *self.shading) {
-            self.recompute_normals(level, Workers::ALONE);
-            self.update_bounds(level);
-        }
-    }
-
-    /// What [`recompute_normals`] does for one cloth.
-    pub(crate) fn recompute_normals(&mut self, level: Level, workers: Workers) {
-        let (topology, shading) = (self.topology, *self.shading);
-        let position = &self.particles.0.state.position;
-        if position.is_empty() {
-            return;
-        }
-        let stale = self.normals.are_stale(topology, shading);
-        let ClothNormals {
-            current, previous, ..
-        } = &mut *self.normals;
-        if stale {
-            let len = match shading {
-                ClothShading::Smooth => topology.particles(),
-                ClothShading::Flat => topology.triangles().len(),
-            };
-            *current = std::iter::repeat_n(Vec3::Z, len).collect();
-            previous.clone_from(current);
-        }
-        match shading {
-            // All are written anew.
-            ClothShading::Smooth => std::mem::swap(previous, current),
-            // A triangle without area keeps the normal it had.
-            ClothShading::Flat => previous.copy_from(current),
-        }
-        match (shading, &topology.lattice, topology.grid) {
-            // The cells of a mesh are cut in its own way.
-            (ClothShading::Smooth, Some(lattice), Some(_)) => {
-                let current = SharedPoints::new(current);
-                workers.share(0..lattice.rows as usize, |rows| {
-                    normals::smooth_lattice(level, lattice, position, current, rows);
-                });
-            }
-            (ClothShading::Smooth, ..) => {
-                normals::smooth(&topology.triangles, position, current);
-            }
-            (ClothShading::Flat, ..) => {
-                normals::flat(topology.triangles().iter(), position, current);
-            }
-        }
-        if stale {
-            previous.copy_from(current);
-            self.normals.revision = topology.revision;
-            self.normals.shading = shading;
-        }
     }
 }

@@ -2,22 +2,16 @@
 //!
 #![doc = include_str!("pins.md")]
 
+mod apply;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{
-    held::{Held, HeldBy, HolderKind},
-    topology::Topology,
-};
+use tailorbird_solver::topology::Topology;
 
-use crate::{
-    cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    material::ClothMaterial,
-    particles::ClothParticles,
-    topology::ClothTopology,
-    weights::ClothWeights,
-};
+pub use apply::apply_pins;
+
+use crate::{error::ClothErrorKind, weights::ClothWeights};
 
 /// The particles that are held: they move with the entity and with nothing else. Change it at any time.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
@@ -36,24 +30,24 @@ pub struct ClothPins {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 pub struct ClothPin {
-    /// What it holds.
-    pub selection: PinSelection,
-    /// Where it holds it, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new
-    /// cloth). The particles move there within one step, evenly over the substeps.
+    /// Particles that the pin holds.
+    pub selection: ClothSelection,
+    /// Place of the pin, in the cloth's frame \[m\]; `None` is where the particles are at the time (at rest, for a new cloth). The
+    /// particles move there within one step, evenly over the substeps.
     #[cfg_attr(feature = "serialize", serde(default))]
     pub target: Option<Vec3>,
-    /// Who made it.
+    /// Author of the pin.
     #[cfg_attr(feature = "serialize", serde(default))]
-    pub author: PinAuthor,
+    pub author: ClothPinAuthor,
 }
 
-/// Which particles a pin holds.
+/// Particles that a pin holds.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
 #[non_exhaustive]
-pub enum PinSelection {
+pub enum ClothSelection {
     /// The particle with this index.
     Particle(u32),
     /// The particles with these indices.
@@ -61,9 +55,9 @@ pub enum PinSelection {
     /// The particle at this column and row of a grid.
     Cell(UVec2),
     /// A corner of a grid.
-    Corner(GridCorner),
+    Corner(ClothCorner),
     /// An edge of a grid: from left to right, or from top to bottom.
-    Edge(GridEdge),
+    Edge(ClothEdge),
     /// Every particle that lies within a ball at rest.
     Within {
         /// Its centre, in the cloth's frame \[m\].
@@ -77,7 +71,7 @@ pub enum PinSelection {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum GridCorner {
+pub enum ClothCorner {
     /// Row 0, column 0.
     TopLeft,
     /// Row 0, last column.
@@ -88,8 +82,8 @@ pub enum GridCorner {
     BottomRight,
 }
 
-impl GridCorner {
-    /// All four.
+impl ClothCorner {
+    /// All four corners.
     pub const ALL: [Self; 4] = [
         Self::TopLeft,
         Self::TopRight,
@@ -104,7 +98,7 @@ impl GridCorner {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum GridEdge {
+pub enum ClothEdge {
     /// Row 0.
     Top,
     /// The last row.
@@ -115,11 +109,11 @@ pub enum GridEdge {
     Right,
 }
 
-/// Who made a pin.
+/// Author of a pin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum PinAuthor {
+pub enum ClothPinAuthor {
     /// The game.
     #[default]
     Scene,
@@ -129,11 +123,11 @@ pub enum PinAuthor {
 
 impl ClothPin {
     /// Holds particles where they are.
-    pub fn new(selection: PinSelection) -> Self {
+    pub fn new(selection: ClothSelection) -> Self {
         Self {
             selection,
             target: None,
-            author: PinAuthor::Scene,
+            author: ClothPinAuthor::Scene,
         }
     }
 
@@ -141,57 +135,53 @@ impl ClothPin {
     pub fn at(particle: u32, target: Vec3) -> Self {
         Self {
             target: Some(target),
-            ..Self::new(PinSelection::Particle(particle))
+            ..Self::new(ClothSelection::Particle(particle))
         }
     }
 }
 
 impl ClothPin {
-    /// Whether it names particles by where they are, so that it means something on another shape as well.
+    /// Returns whether it selects particles by their positions, so that it means something on another shape as well.
     pub fn is_by_place(&self) -> bool {
         !matches!(
             self.selection,
-            PinSelection::Particle(_) | PinSelection::Particles(_) | PinSelection::Cell(_)
+            ClothSelection::Particle(_) | ClothSelection::Particles(_) | ClothSelection::Cell(_)
         )
     }
 }
 
 impl ClothPins {
-    fn of(selections: impl IntoIterator<Item = PinSelection>) -> Self {
+    fn of(selections: impl IntoIterator<Item = ClothSelection>) -> Self {
         Self {
             pins: selections.into_iter().map(ClothPin::new).collect(),
         }
     }
 
     /// Corners of a grid.
-    pub fn corners(corners: impl IntoIterator<Item = GridCorner>) -> Self {
-        Self::of(corners.into_iter().map(PinSelection::Corner))
+    pub fn corners(corners: impl IntoIterator<Item = ClothCorner>) -> Self {
+        Self::of(corners.into_iter().map(ClothSelection::Corner))
     }
 
     /// Edges of a grid.
-    pub fn edges(edges: impl IntoIterator<Item = GridEdge>) -> Self {
-        Self::of(edges.into_iter().map(PinSelection::Edge))
+    pub fn edges(edges: impl IntoIterator<Item = ClothEdge>) -> Self {
+        Self::of(edges.into_iter().map(ClothSelection::Edge))
     }
 
     /// Particles by index.
     pub fn particles(particles: impl IntoIterator<Item = u32>) -> Self {
-        Self::of(particles.into_iter().map(PinSelection::Particle))
+        Self::of(particles.into_iter().map(ClothSelection::Particle))
     }
 
     /// Every particle that lies within a ball (in the cloth's frame \[m\]) at rest.
     pub fn within(center: Vec3, radius: f32) -> Self {
-        Self::of([PinSelection::Within { center, radius }])
+        Self::of([ClothSelection::Within { center, radius }])
     }
 
     /// Every particle whose painted weight is above `threshold`.
     pub fn painted(weights: &ClothWeights, threshold: f32) -> Self {
-        Self::of([PinSelection::Particles(weights.above(threshold).collect())])
-    }
-
-    /// Every particle of `cloth` for whose rest position (in the entity's own space \[m\]) `held` is true.
-    pub fn matching(cloth: &Cloth, mut held: impl FnMut(Vec3) -> bool) -> Self {
-        let rest = cloth.rest_positions();
-        Self::particles((0..rest.len() as u32).filter(|&i| held(rest[i as usize])))
+        Self::of([ClothSelection::Particles(
+            weights.above(threshold).collect(),
+        )])
     }
 
     /// Adds a pin.
@@ -200,20 +190,22 @@ impl ClothPins {
         self
     }
 
-    /// Whether the player made any of the pins.
+    /// Returns whether the player made any of the pins.
     pub fn has_user_pins(&self) -> bool {
-        self.pins.iter().any(|pin| pin.author == PinAuthor::User)
+        self.pins
+            .iter()
+            .any(|pin| pin.author == ClothPinAuthor::User)
     }
 
     /// Removes the pins that the player made, and tells how many there were.
     pub fn release_user_pins(&mut self) -> usize {
         let before = self.pins.len();
-        self.pins.retain(|pin| pin.author != PinAuthor::User);
+        self.pins.retain(|pin| pin.author != ClothPinAuthor::User);
         before - self.pins.len()
     }
 }
 
-impl PinSelection {
+impl ClothSelection {
     /// The particles that are selected.
     ///
     /// # Errors
@@ -231,7 +223,7 @@ impl PinSelection {
     ) -> Result<Vec<u32>, ClothErrorKind> {
         let particles = topology.particles();
         let grid = || {
-            topology.grid.ok_or_else(|| ClothErrorKind::NotAGrid {
+            topology.grid().ok_or_else(|| ClothErrorKind::NotAGrid {
                 field: field.into(),
                 value: format!("{self:?}"),
             })
@@ -267,10 +259,10 @@ impl PinSelection {
             Self::Corner(corner) => {
                 let last = grid()? - 1;
                 let at = match corner {
-                    GridCorner::TopLeft => UVec2::ZERO,
-                    GridCorner::TopRight => UVec2::new(last.x, 0),
-                    GridCorner::BottomLeft => UVec2::new(0, last.y),
-                    GridCorner::BottomRight => last,
+                    ClothCorner::TopLeft => UVec2::ZERO,
+                    ClothCorner::TopRight => UVec2::new(last.x, 0),
+                    ClothCorner::BottomLeft => UVec2::new(0, last.y),
+                    ClothCorner::BottomRight => last,
                 };
                 vec![at.y * (last.x + 1) + at.x]
             }
@@ -280,10 +272,10 @@ impl PinSelection {
                     y: rows,
                 } = grid()?;
                 match edge {
-                    GridEdge::Top => (0..columns).collect(),
-                    GridEdge::Bottom => (0..columns).map(|c| (rows - 1) * columns + c).collect(),
-                    GridEdge::Left => (0..rows).map(|r| r * columns).collect(),
-                    GridEdge::Right => (0..rows).map(|r| r * columns + columns - 1).collect(),
+                    ClothEdge::Top => (0..columns).collect(),
+                    ClothEdge::Bottom => (0..columns).map(|c| (rows - 1) * columns + c).collect(),
+                    ClothEdge::Left => (0..rows).map(|r| r * columns).collect(),
+                    ClothEdge::Right => (0..rows).map(|r| r * columns + columns - 1).collect(),
                 }
             }
             Self::Within { center, radius } => {
@@ -306,92 +298,5 @@ impl PinSelection {
                     .collect()
             }
         })
-    }
-}
-
-/// Turns changed pins into the list of held particles, and sets masses.
-///
-/// A pin that is wrong is reported and left out; the others hold.
-pub fn apply_pins(
-    mut cloths: Query<
-        (
-            Entity,
-            Ref<ClothPins>,
-            Ref<ClothTopology>,
-            Ref<ClothMaterial>,
-            &mut ClothParticles,
-            &mut ClothStatus,
-        ),
-        With<Cloth>,
-    >,
-    commands: ParallelCommands,
-) {
-    for (entity, pins, topology, material, mut particles, mut status) in &mut cloths {
-        if !(pins.is_changed() || topology.is_changed() || material.is_changed())
-            || particles.is_empty()
-        {
-            continue;
-        }
-        let mut errors = Vec::new();
-        let mut held = Vec::new();
-        for pin in &pins.pins {
-            if let Some(error) = pin
-                .target
-                .and_then(|t| ClothErrorKind::vector("ClothPins.target", t))
-            {
-                errors.push(error);
-                continue;
-            }
-            match pin.selection.particles(&topology) {
-                Ok(selected) => {
-                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)));
-                }
-                Err(error) => errors.push(error),
-            }
-        }
-        ClothStatus::update(&mut status, entity, &commands, ErrorSource::Pins, errors);
-        particles.set_pins(&held);
-        let errors = material.errors();
-        if errors.is_empty() {
-            particles
-                .0
-                .set_masses(topology.areas(), material.areal_density);
-        } else {
-            particles.0.update_inv_masses();
-        }
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ErrorSource::Material,
-            errors,
-        );
-    }
-}
-
-impl ClothParticles {
-    /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
-    fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
-        let before = self.0.input.held.of(HolderKind::Pin);
-        let place = |particle: u32| {
-            let at = before.binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
-            match at.map(|at| before[at].by) {
-                Ok(HeldBy::Pin(place)) => place,
-                _ => self.position(particle as usize),
-            }
-        };
-        let mut held: Vec<Held> = pins
-            .iter()
-            .map(|&(particle, target)| Held {
-                particle: self.order.stored(particle),
-                by: HeldBy::Pin(target.unwrap_or_else(|| place(particle))),
-            })
-            .collect();
-        // Stable, so that the last of several pins of a particle can be kept.
-        held.sort_by_key(|pin| self.order.given(pin.particle));
-        held.reverse();
-        held.dedup_by_key(|pin| pin.particle);
-        held.reverse();
-        self.0.input.held.replace(HolderKind::Pin, held);
     }
 }

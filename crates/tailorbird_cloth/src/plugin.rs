@@ -32,7 +32,7 @@ use crate::{
     prelude::*,
     runner::{OwnStages, simulate_cloths},
     sampling::{
-        FixedLoopBegins, FixedLoopEnds, FrameClock, begin_fixed_step, end_fixed_step,
+        ClothFrameClock, FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step,
         pass_on_teleports, sample_motion, sample_parents, see_frame,
     },
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
@@ -75,10 +75,10 @@ impl Plugin for ClothPlugin {
             .init_resource::<ClothStep>()
             .init_resource::<ClothStepTime>()
             .init_resource::<ClothColliders>()
-            .init_resource::<ExternalColliders>()
+            .init_resource::<ClothExternalColliders>()
             .init_resource::<ClothReactions>()
-            .init_resource::<Wind>()
-            .init_resource::<BlowingWind>();
+            .init_resource::<ClothWind>()
+            .init_resource::<ClothWindState>();
 
         app.configure_sets(
             self.schedule,
@@ -210,8 +210,8 @@ impl Plugin for ClothPlugin {
 
 /// Notes in each frame, and at both ends of each step of the fixed loop, where things are.
 fn look_at_motion(app: &mut App) {
-    app.init_resource::<FrameClock>()
-        .add_message::<Teleported>()
+    app.init_resource::<ClothFrameClock>()
+        .add_message::<ClothMotionTeleported>()
         .add_systems(
             RunFixedMainLoop,
             (sample_parents, pass_on_teleports, see_frame, see_targets)
@@ -250,17 +250,17 @@ fn add_part<M>(
 fn register_types(app: &mut App) {
     app.register_type::<Cloth>()
         .register_type::<ClothAttachment>()
-        .register_type::<AttachmentOf>()
+        .register_type::<ClothAttachmentOf>()
         .register_type::<ClothAttachments>()
-        .register_type::<AttachedTo>()
-        .register_type::<Attachments>()
-        .register_type::<AttachmentForce>()
-        .register_type::<crate::attachment::AttachedParticles>()
-        .register_type::<crate::attachment::AttachmentState>()
+        .register_type::<ClothAttachedTo>()
+        .register_type::<ClothAttachmentsHeld>()
+        .register_type::<ClothAttachmentForce>()
+        .register_type::<crate::attachment::ClothAttachedParticles>()
+        .register_type::<crate::attachment::ClothAttachmentState>()
         .register_type::<ClothMotionConstraints>()
         .register_type::<ClothMotionTargets>()
-        .register_type::<crate::motion::MotionState>()
-        .register_type::<crate::motion::TargetSamples>()
+        .register_type::<crate::motion::ClothMotionState>()
+        .register_type::<crate::motion::ClothTargetSamples>()
         .register_type::<ClothPinForces>()
         .register_type::<ClothMaterial>()
         .register_type::<ClothPins>()
@@ -270,12 +270,13 @@ fn register_types(app: &mut App) {
         .register_type::<ClothShading>()
         .register_type::<ClothStatus>()
         .register_type::<ClothSolver>()
+        .register_type::<ClothSubsteps>()
         .register_type::<ClothInertia>()
         .register_type::<ClothSleep>()
-        .register_type::<ClothRest>()
+        .register_type::<ClothSleepState>()
         .register_type::<ClothSeen>()
         .register_type::<crate::tethers::ClothTethers>()
-        .register_type::<crate::settings::InstructionSet>()
+        .register_type::<crate::settings::ClothInstructionSet>()
         .register_type::<ClothTopology>()
         .register_type::<ClothFrame>()
         .register_type::<ClothParticles>()
@@ -283,12 +284,12 @@ fn register_types(app: &mut App) {
         .register_type::<ClothBounds>()
         .register_type::<ClothCollider>()
         .register_type::<ClothLayers>()
-        .register_type::<crate::collider::ColliderPose>()
+        .register_type::<crate::collider::ClothColliderState>()
         .register_type::<ClothSettings>()
-        .register_type::<SampledMotion>()
-        .register_type::<Teleported>()
+        .register_type::<ClothSampledMotion>()
+        .register_type::<ClothMotionTeleported>()
         .register_type::<ClothStep>()
         .register_type::<ClothStepTime>()
-        .register_type::<Wind>()
-        .register_type::<WindZone>();
+        .register_type::<ClothWind>()
+        .register_type::<ClothWindZone>();
 }

@@ -6,7 +6,7 @@ use tailorbird_solver::topology::Topology;
 
 use crate::{bounds::ClothBounds, particles::ClothParticles};
 
-/// Where a ray meets a cloth, in the space of the ray that was asked for.
+/// Hit of a ray on a cloth, in the space of the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClothHit {
     /// The triangle, an index into [`Topology::triangles()`].
@@ -93,7 +93,7 @@ fn meets_box(ray: Ray3d, bounds: &ClothBounds) -> bool {
     enter <= leave * (1.0 + 1e-5)
 }
 
-/// How far outside a triangle a ray still meets it, as a weight of a corner: what rounding takes from both triangles of an edge.
+/// Tolerance of a hit outside a triangle, as a weight of a corner: rounding could take the edge from both of its triangles.
 const EDGE: f32 = 1e-5;
 
 /// Ray against triangle (Möller and Trumbore 1997), both sides: barycentric coordinates and distance.

@@ -1,16 +1,16 @@
-//! With which force a cloth pulls at what holds it.
+//! Force of a cloth on its holders.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::reaction::PinForces;
 
-/// With which force a cloth pulls at everything that holds it rigidly: pins, rigid attachments, motion constraints of distance
-/// 0, the player's hand. Measured where a cloth has this component; a hanging sheet of 1 kg pulls with 9.81 N.
+/// Force of a cloth on everything that holds it rigidly: pins, rigid attachments, motion constraints of distance 0, the player's hand.
+/// Measured where a cloth has this component; a hanging sheet of 1 kg pulls with 9.81 N.
 ///
-/// It is what the constraints do to the momentum of the free particles, and the weight of those that are held; the inertia of
-/// these, wind on them and the springs of [attachments](crate::attachment::AttachmentForce) are not part of it. Where the cloth lies on a
-/// collider, so is what the lines press against that.
+/// The force is the change of the free particles' momentum by the constraints, plus the weight of the held particles; the inertia of
+/// these, wind on them and the springs of [attachments](crate::attachment::ClothAttachmentForce) are not part of it. If the cloth lies on a
+/// collider, the pressure of the lines on it is a part as well.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
@@ -26,7 +26,7 @@ use tailorbird_solver::reaction::PinForces;
 pub struct ClothPinForces(#[reflect(ignore)] pub(crate) PinForces);
 
 impl ClothPinForces {
-    /// The sum over all that is held, mean over the last step, in world axes \[N\].
+    /// Sum over all held particles, mean over the last step, in world axes \[N\].
     pub fn force(&self) -> Vec3 {
         self.0.force()
     }

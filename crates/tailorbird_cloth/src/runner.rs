@@ -1,8 +1,7 @@
 //! Takes cloths through a step, one by one.
 //!
-//! Where nobody but this crate has systems in [`ClothSubstep`], nothing has to happen between the stages of a step, and a cloth
-//! can go through all of them while it is in the cache. Many small cloths are shared out to threads; a large one has all
-//! threads to itself.
+//! If this crate alone has systems in [`ClothSubstep`], nothing has to happen between the stages of a step, and a cloth can go through all
+//! of them while it is in the cache. Many small cloths are shared out to threads; a large one has all threads to itself.
 
 use bevy_ecs::{
     prelude::*,
@@ -21,10 +20,10 @@ use crate::{
     schedule::ClothSubstep,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
-    wind::BlowingWind,
+    wind::ClothWindState,
 };
 
-/// From this many particles on a cloth is worked on by all threads, and not shared out with others.
+/// Number of particles from which on a cloth is worked on by all threads, and not shared out with others.
 pub(crate) const LARGE: usize = 16_384;
 
 /// The systems that this crate has in [`ClothSubstep`].
@@ -32,7 +31,7 @@ pub(crate) const LARGE: usize = 16_384;
 pub struct OwnStages(Vec<SystemKey>);
 
 impl OwnStages {
-    /// Those that are there now.
+    /// Systems of a schedule at this time.
     pub fn new(schedule: &Schedule) -> Self {
         Self(systems(schedule).collect())
     }
@@ -47,7 +46,7 @@ fn systems(schedule: &Schedule) -> impl Iterator<Item = SystemKey> {
 }
 
 impl OwnStages {
-    /// Whether [`ClothSubstep`] has these alone: no game put systems or conditions into it, or took any out.
+    /// Returns whether [`ClothSubstep`] has these alone: no game put systems or conditions into it, or took any out.
     pub fn are_all(&self, schedules: &Schedules) -> bool {
         let Some(schedule) = schedules.get(ClothSubstep) else {
             return false;
@@ -63,7 +62,7 @@ impl OwnStages {
 /// Takes each cloth through a whole step.
 pub(crate) fn simulate_cloths(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     colliders: Res<ClothColliders>,
     mut time: ResMut<ClothStepTime>,
     mut cloths: Query<ClothStages, With<Cloth>>,
@@ -73,10 +72,17 @@ pub(crate) fn simulate_cloths(
     let simulate = |cloth: &mut ClothStagesItem, workers: Workers| {
         cloth.particles.0.begin_step();
         wind.blow(&step, workers, cloth);
-        let count = step.substeps_of(*cloth.solver, cloth.topology, &cloth.particles);
+        let count = step.substeps_of(
+            (*cloth.solver, cloth.substeps),
+            cloth.topology,
+            &cloth.particles,
+        );
         let nth = |index| step.nth_of(index, count, workers);
-        cloth.with_cloth(|cloth| solver_step::step(count, nth, &colliders.list, cloth));
-        cloth.guard(&commands);
+        cloth.with_cloth(|cloth| {
+            let group = std::slice::from_mut(cloth);
+            solver_step::step(count, nth, &colliders.list, group);
+        });
+        cloth.guard(step.level(), &commands);
         cloth.settle(&step, &colliders);
         cloth.recompute_normals(step.level(), workers);
         cloth.update_bounds(step.level());

@@ -1,4 +1,4 @@
-//! What holds for all cloths: gravity, accuracy, time.
+//! Settings of all cloths: gravity, accuracy, time.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -19,7 +19,7 @@
 //! }
 //! ```
 //!
-//! | setting | default | what it costs |
+//! | setting | default | cost |
 //! | --- | --- | --- |
 //! | [`gravity`](ClothSettings::gravity) | 9.81 m/s² down | nothing |
 //! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution, storms and blows, for each cloth its own | in proportion to their number |
@@ -32,7 +32,7 @@
 //! | [`teleport_speed`](ClothSettings::teleport_speed) | 30 m/s | nothing |
 //! | [`paused`](ClothSettings::paused) | no | a pause costs nothing to speak of |
 //!
-//! How long a step lasts is not set here but by the schedule: `Time::<Fixed>::from_hz(60.0)`; Bevy's own default is 64 Hz. Steps of half
+//! The length of a step is not set here but by the schedule: `Time::<Fixed>::from_hz(60.0)`; Bevy's own default is 64 Hz. Steps of half
 //! the length with half as many substeps cost about the same, and answer to holders, colliders and wind twice as often.
 //!
 //! # Traps
@@ -40,17 +40,17 @@
 //! - **[`time_scale`](ClothSettings::time_scale)** is for cloth alone. Slow motion of a whole game is `Time<Virtual>::set_relative_speed`.
 //! - **A system in [`ClothSubstep`](crate::schedule::ClothSubstep)** makes all cloths take as many substeps as the one that needs most.
 //! - Gravity, substeps and iterations that change **wake** all cloths.
-//! - What is wrong is logged once, and the last valid settings stay in force.
+//! - Errors are logged once, and the last valid settings stay in force.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-pub use tailorbird_solver::instruction_set::InstructionSet;
+pub use tailorbird_solver::instruction_set::ClothInstructionSet;
 
 use crate::error::ClothErrorKind;
 
-/// What holds for all cloths. Insert or change it at any time.
+/// Settings of all cloths. Insert or change it at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -67,33 +67,33 @@ pub struct ClothSettings {
     /// hand, under bodies, where air, forces or its entity's motion of more than 5 m/s stretch it, where it is struck, and as a mesh that is
     /// asked for more than it has.
     pub most_substeps: u32,
-    /// How many particles times substeps all cloths together take in a step at most, for storms, blows and meshes that are asked for more than they
-    /// have, beyond what they take at rest; each its part of what it wants. A particle of a mesh that is no grid counts as eight. 0 is the same number always.
+    /// Largest number of additional substeps, times particles, that all cloths together take in a step for storms, blows and meshes that
+    /// are asked for more than they have; each gets its part of what it needs. A particle of a mesh that is no grid counts as eight. 0
+    /// never changes the number.
     pub substep_budget: u32,
-    /// How often the constraints are passed over in each substep. One pass in many substeps stretches less than many passes
-    /// in few.
+    /// Number of passes over the constraints in each substep. One pass in many substeps stretches less than many passes in few.
     pub iterations: u32,
     /// The instructions that the kernels use. The result has the same bits with any.
-    pub instruction_set: InstructionSet,
-    /// How fast time passes for cloth, compared with the clock of its schedule, 0 to 10 [-]. 0 is a pause. Beyond 1 a step has
-    /// that many times as many substeps, where their number is not set.
+    pub instruction_set: ClothInstructionSet,
+    /// Speed of time for cloth, compared with the clock of its schedule, 0 to 10 [-]. 0 is a pause. Beyond 1 a step has that many times as
+    /// many substeps, if their number is not set.
     ///
-    /// For cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
+    /// It acts on cloth alone: entities and colliders move as they do, and seem the faster to a slow cloth. `Time<Virtual>` slows
     /// everything.
     pub time_scale: f32,
-    /// How fast what is inside a collider is pushed out of it, where it did not go in by its own motion: because one of the two
-    /// appeared there, or was put there [m/s]. It gets no velocity of that.
+    /// Speed at which particles inside a collider are pushed out of it, if they did not go in by their own motion: because cloth or
+    /// collider appeared there, or was put there [m/s]. They get no velocity of that.
     #[cfg_attr(
         feature = "serialize",
         serde(deserialize_with = "crate::unbounded::number")
     )]
     pub overlap_speed: f32,
-    /// What is put elsewhere, and what moves [m/s]; 30 by default, infinity where nothing is. A way whose velocity differs from the one
-    /// before by more than that one's magnitude and this is a hop, of a cloth's entity, of what holds it, of a collider, of a target of a
-    /// motion constraint: cloth is taken along, and feels the motion before it alone. See [`sampling`](crate::sampling#hops).
+    /// Speed that separates motion from hops [m/s]; 30 by default, infinity for no hops. A displacement whose velocity differs from the one
+    /// before by more than that one's magnitude and this is a hop, of a cloth's entity, of a holder, of a collider, of a target of a motion
+    /// constraint: cloth is taken along, and feels the motion before it alone. See [`sampling`](crate::sampling#hops).
     ///
-    /// Lower ones see shorter hops, and take motion that begins at once for one: a blow, a kick. The way of a hop is that much times
-    /// the length of a frame, or of a step for what moves in the fixed loop: at 60 a second half a metre.
+    /// Lower values see shorter hops, and take motion that begins at once for one: a blow, a kick. The length of a hop is that much times
+    /// the length of a frame, or of a step for motion in the fixed loop: at 60 a second half a metre.
     #[cfg_attr(
         feature = "serialize",
         serde(deserialize_with = "crate::unbounded::number")
@@ -101,7 +101,7 @@ pub struct ClothSettings {
     pub teleport_speed: f32,
     /// Stops the simulation. Cloths stay as they are, and are carried along by what holds them.
     pub paused: bool,
-    /// While paused: how many steps to do all the same. Counts down.
+    /// Number of steps to do while paused. Counts down.
     pub pending_steps: u32,
 }
 
@@ -113,7 +113,7 @@ impl Default for ClothSettings {
             most_substeps: 64,
             substep_budget: 500_000,
             iterations: 1,
-            instruction_set: InstructionSet::Auto,
+            instruction_set: ClothInstructionSet::Auto,
             time_scale: 1.0,
             overlap_speed: 1.0,
             teleport_speed: Self::TELEPORT_SPEED,
@@ -124,7 +124,7 @@ impl Default for ClothSettings {
 }
 
 impl ClothSettings {
-    /// While paused: does one step.
+    /// Does one step while paused.
     pub fn step_once(&mut self) {
         self.pending_steps += 1;
     }
@@ -147,7 +147,7 @@ impl ClothSettings {
         }
     }
 
-    /// What is wrong with these settings.
+    /// Errors in these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let most = Self::MOST_PASSES as f32;
         [

@@ -6,7 +6,7 @@ use tracing::warn;
 
 use crate::{diagnostics::ClothStepTime, step::ClothStep};
 
-/// What to write into `Cargo.toml` for a development build that is as fast as a release build, where cloth is concerned.
+/// Lines for `Cargo.toml` that make a development build as fast as a release build, where cloth is concerned.
 pub const PROFILE_LINES: &str = include_str!("profile.toml");
 
 /// Warns once when a step takes longer than it lasts, and the build is why.

@@ -4,25 +4,25 @@ use bevy_ecs::{prelude::*, query::QueryData};
 use tailorbird_solver::{self as solver, step::Stage};
 
 use crate::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
     cloth::Cloth,
     collider::{ClothColliders, ClothLayers},
     error::ClothStatus,
     frame::ClothFrame,
     material::ClothMaterial,
-    motion::MotionState,
+    motion::ClothMotionState,
     normals::{ClothNormals, ClothShading},
     particles::ClothParticles,
     reaction::ClothPinForces,
-    sleep::{ClothRest, ClothSleep},
-    solver::ClothSolver,
+    sleep::{ClothSleep, ClothSleepState},
+    solver::{ClothSolver, ClothSubsteps},
     step::ClothStep,
     tethers::ClothTethers,
     topology::ClothTopology,
 };
 
-/// What the stages need of a cloth. Opaque: the cloth's components are what to read.
+/// Components of a cloth that the stages need. Opaque: read the cloth's components instead.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub struct ClothStages {
@@ -30,18 +30,19 @@ pub struct ClothStages {
     pub(crate) topology: &'static ClothTopology,
     pub(crate) material: &'static ClothMaterial,
     pub(crate) solver: &'static ClothSolver,
+    pub(crate) substeps: Option<&'static ClothSubsteps>,
     pub(crate) shading: &'static ClothShading,
     pub(crate) sleep: &'static ClothSleep,
     pub(crate) tethers: &'static ClothTethers,
     pub(crate) layers: Option<&'static ClothLayers>,
-    pub(crate) attached: &'static mut AttachedParticles,
-    pub(crate) motion: Option<&'static MotionState>,
+    pub(crate) attached: &'static mut ClothAttachedParticles,
+    pub(crate) motion: Option<&'static ClothMotionState>,
     pub(crate) pin_forces: Option<&'static mut ClothPinForces>,
     pub(crate) frame: &'static mut ClothFrame,
     pub(crate) particles: &'static mut ClothParticles,
     pub(crate) normals: &'static mut ClothNormals,
     pub(crate) bounds: &'static mut ClothBounds,
-    pub(crate) rest: &'static mut ClothRest,
+    pub(crate) rest: &'static mut ClothSleepState,
     pub(crate) status: &'static mut ClothStatus,
 }
 

@@ -10,7 +10,7 @@
 //! # use tailorbird_cloth::{collider::find_contacts, prelude::*, substep::{SubstepCloths, SubstepContact}};
 //! const RADIUS: f32 = 2.0;
 //!
-//! /// Where a point lies outside of the hollow: how far, and which way is in.
+//! /// Contact of a point outside of the hollow: its depth, and the direction inwards.
 //! fn contact(point: Vec3) -> Option<SubstepContact> {
 //!     let depth = point.length() - RADIUS;
 //!     (depth > 0.0).then(|| SubstepContact::new(-point.normalize(), depth).with_friction(0.5))
@@ -63,24 +63,24 @@ use tailorbird_solver::{
 
 use crate::{
     cloth::Cloth, frame::ClothFrame, material::ClothMaterial, particles::ClothParticles,
-    sleep::ClothRest, step::ClothStep,
+    sleep::ClothSleepState, step::ClothStep,
 };
 
-/// The cloths that are simulated in this substep; those that sleep are left out: see [`ClothRest::wake`].
+/// The cloths that are simulated in this substep; those that sleep are left out: see [`ClothSleepState::wake`].
 #[derive(SystemParam)]
 pub struct SubstepCloths<'w, 's> {
     step: Res<'w, ClothStep>,
     cloths: Query<'w, 's, SubstepQuery, With<Cloth>>,
 }
 
-/// What is read and written of a cloth.
+/// Components of a cloth that are read and written.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(crate) struct SubstepQuery {
     entity: Entity,
     frame: &'static ClothFrame,
     material: &'static ClothMaterial,
-    rest: &'static ClothRest,
+    rest: &'static ClothSleepState,
     particles: &'static mut ClothParticles,
 }
 
@@ -115,7 +115,7 @@ impl SubstepCloths<'_, '_> {
 pub struct SubstepCloth<'w> {
     entity: Entity,
     frame: &'w ClothFrame,
-    /// From the frame's axes to the world's.
+    /// Rotation from the frame's axes to the world's.
     axes: Mat3,
     material: &'w ClothMaterial,
     particles: &'w mut Particles,
@@ -127,11 +127,11 @@ pub struct SubstepCloth<'w> {
 pub struct SubstepContact {
     /// Unit normal of the surface, in world axes, towards where particles are to be.
     pub normal: Vec3,
-    /// How far the particle is behind the surface \[m\]; negative where it is above it.
+    /// Depth of the particle behind the surface \[m\]; negative above it.
     pub depth: f32,
     /// Coulomb friction of the surface [-]; the geometric mean with the material's counts.
     pub friction: f32,
-    /// How far the surface moves in this substep where the particle is, in world axes \[m\].
+    /// Displacement of the surface at the particle in this substep, in world axes \[m\].
     pub surface: Vec3,
 }
 
@@ -146,7 +146,7 @@ impl SubstepContact {
         }
     }
 
-    /// With this Coulomb friction [-].
+    /// Sets the Coulomb friction [-].
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }
@@ -156,7 +156,7 @@ impl SubstepContact {
         Self { surface, ..self }
     }
 
-    /// Whether it says anything.
+    /// Returns whether all its numbers are usable.
     fn is_valid(&self) -> bool {
         self.depth.is_finite()
             && self.normal.is_normalized()
@@ -187,7 +187,7 @@ impl<'w> SubstepCloth<'w> {
         self.particles.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.particles.is_empty()
     }
@@ -220,29 +220,29 @@ impl<'w> SubstepCloth<'w> {
         self.particles.input.inv_mass[self.stored(i)]
     }
 
-    /// Whether a pin, an attachment, a motion constraint or a hand holds a particle: whoever does so moves it.
+    /// Returns whether a pin, an attachment, a motion constraint or a hand holds a particle, and so moves it.
     pub fn is_held(&self, i: usize) -> bool {
         self.inverse_mass(i) == 0.0
     }
 
-    /// Where a particle is.
+    /// Position of a particle.
     #[inline]
     pub fn position(&self, i: usize) -> Vec3 {
         self.to_world(self.position_in_frame(i))
     }
 
-    /// Where a particle was at the start of the substep, as seen from the frame as it is now.
+    /// Position of a particle at the start of the substep, as seen from the frame as it is now.
     pub fn previous_position(&self, i: usize) -> Vec3 {
         self.to_world(self.previous_position_in_frame(i))
     }
 
-    /// Where a particle is, in the frame \[m\].
+    /// Position of a particle, in the frame \[m\].
     #[inline]
     pub fn position_in_frame(&self, i: usize) -> Vec3 {
         self.particles.state.position.get(self.stored(i))
     }
 
-    /// Where a particle was at the start of the substep, in the frame \[m\].
+    /// Position of a particle at the start of the substep, in the frame \[m\].
     pub fn previous_position_in_frame(&self, i: usize) -> Vec3 {
         self.particles.state.previous_position.get(self.stored(i))
     }

@@ -1,4 +1,4 @@
-//! What is computed once from the rest shape, and shared.
+//! Topology of a cloth: computed once from the rest shape, and shared.
 
 use std::{ops::Deref, sync::Arc};
 

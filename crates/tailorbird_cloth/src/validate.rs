@@ -3,12 +3,12 @@
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
-use tailorbird_solver::kernels::range::are_finite;
+use tailorbird_solver::step::Report;
 use tracing::warn;
 
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };
@@ -19,13 +19,13 @@ pub struct ClothReset {
     /// The cloth.
     pub entity: Entity,
     /// Why.
-    pub reason: ResetReason,
+    pub reason: ClothResetReason,
 }
 
 /// Why a cloth was put back to an earlier state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[non_exhaustive]
-pub enum ResetReason {
+pub enum ClothResetReason {
     /// A position became infinite or NaN; the cloth is back at the start of the step, without velocity.
     NonFinite,
 }
@@ -37,17 +37,19 @@ pub fn guard_finite(
     commands: ParallelCommands,
 ) {
     for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.guard(&commands);
+        cloth.guard(step.level(), &commands);
     });
 }
 
 impl ClothStagesItem<'_, '_> {
-    /// What [`guard_finite`] does for one cloth.
-    pub(crate) fn guard(&mut self, commands: &ParallelCommands) {
-        let particles = &*self.particles;
-        let strained = particles.0.state.effort.unmet();
+    /// Runs [`guard_finite`] for one cloth.
+    pub(crate) fn guard(&mut self, level: Level, commands: &ParallelCommands) {
+        let Report {
+            strained,
+            stretched,
+            non_finite,
+        } = Report::of(level, &self.particles);
         let entity = self.entity;
-        let stretched = particles.0.state.effort.stretched();
         let known = [self.status.strained(), self.status.stretched()];
         // It changes in each step, and counts as changed when it begins and ends.
         if known.map(|part| part > 0.0) != [strained, stretched].map(|part| part > 0.0) {
@@ -61,30 +63,20 @@ impl ClothStagesItem<'_, '_> {
                 "{entity}: {percent:.0} % of the edges are longer than the fabric lets them be: holds or colliders ask for more"
             );
         }
-        let all = [
-            &particles.0.state.position,
-            &particles.0.state.previous_position,
-        ];
-        if all
-            .into_iter()
-            .all(|points| are_finite(Level::new(), points))
-        {
+        let Some(particle) = non_finite else {
             return;
-        }
-        let particle = particles
-            .positions()
-            .position(|p| !p.is_finite())
-            .unwrap_or_default();
+        };
+        let particle = self.particles.order.given(particle) as usize;
         self.particles.0.reset_to_step_start();
         let (entity, status) = (self.entity, &mut self.status);
         let error = ClothErrorKind::NonFiniteState { particle };
-        if status.is_ok_for(ErrorSource::State) {
-            ClothStatus::update(status, entity, commands, ErrorSource::State, [error]);
+        if status.is_ok_for(ClothErrorSource::State) {
+            ClothStatus::update(status, entity, commands, ClothErrorSource::State, [error]);
         }
         commands.command_scope(|mut commands| {
             commands.trigger(ClothReset {
                 entity,
-                reason: ResetReason::NonFinite,
+                reason: ClothResetReason::NonFinite,
             });
         });
     }

@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 
-/// For each particle, by its given number, a weight from 0 to 1 that was painted on the mesh: how firmly it is held.
+/// Weight from 0 to 1 of each particle, in original order, that was painted on the mesh: the firmness of its hold.
 ///
 /// `ClothFromMesh` in the crate `tailorbird` fills it in from vertex colours or an attribute; the greatest of the vertices of a
 /// particle counts. It holds nothing by itself: [`ClothPins::painted`](crate::pins::ClothPins::painted) makes pins of it.

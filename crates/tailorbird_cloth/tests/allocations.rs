@@ -69,7 +69,7 @@ fn cloth_adds_no_allocation_to_an_update() {
 
     let hang = Scene::hang(UVec2::splat(24));
     let wind = Scene {
-        wind: Wind::steady(Vec3::new(8.0, 0.0, 2.0)),
+        wind: ClothWind::steady(Vec3::new(8.0, 0.0, 2.0)),
         ..hang.clone()
     };
     for (name, base) in [
@@ -99,13 +99,13 @@ fn cloth_adds_no_allocation_to_an_update() {
     });
     let (cloth, world) = (held.entity, held.sim.app.world_mut());
     let hand = world.spawn(Transform::default()).id();
-    let edge = ClothAttachment::edge(GridEdge::Top);
-    let soft = ClothAttachment::edge(GridEdge::Left).with_compliance(0.01);
+    let edge = ClothAttachment::edge(ClothEdge::Top);
+    let soft = ClothAttachment::edge(ClothEdge::Left).with_compliance(0.01);
     for attachment in [edge, soft] {
-        world.spawn((attachment.to(hand), AttachmentOf(cloth)));
+        world.spawn((attachment.to(hand), ClothAttachmentOf(cloth)));
     }
-    let targets = ClothMotionTargets::in_space(TargetSpace::World);
-    let limits = ClothMotionConstraints::within(0.2).with_backstop(0.1, 1.0);
+    let targets = ClothMotionTargets::in_space(ClothTargetSpace::World);
+    let limits = ClothMotionConstraints::at_most(0.2).with_backstop(0.1, 1.0);
     world
         .entity_mut(cloth)
         .insert((limits, targets, ClothPinForces::default()));
@@ -151,8 +151,8 @@ fn cloth_adds_no_allocation_to_an_update() {
 
 /// Every kind of collider, each once that stands and once that moves about.
 fn kinds() -> Vec<ClothCollider> {
-    let ball = ColliderShape::Sphere { radius: 0.1 };
-    let capsule = ColliderShape::Capsule {
+    let ball = ClothColliderShape::Sphere { radius: 0.1 };
+    let capsule = ClothColliderShape::Capsule {
         radius: 0.05,
         half_length: 0.1,
     };
@@ -215,7 +215,7 @@ fn among_colliders(substeps: u32) -> Sheet {
     let mut time = 0.0f32;
     sheet.sim.app.add_systems(
         FixedUpdate,
-        move |mut places: Query<&mut Transform>, mut colliders: ResMut<ExternalColliders>| {
+        move |mut places: Query<&mut Transform>, mut colliders: ResMut<ClothExternalColliders>| {
             time += 1.0 / 60.0;
             for (k, entity) in moving.iter().enumerate() {
                 if let Ok(mut at) = places.get_mut(*entity) {
@@ -232,7 +232,7 @@ fn among_colliders(substeps: u32) -> Sheet {
                     *body,
                     shapes[k % shapes.len()].clone(),
                     [at(time - 1.0 / 60.0), at(time)],
-                    Some(ColliderBody {
+                    Some(ClothColliderBody {
                         body: *body,
                         inv_mass: Vec3::splat(2.0),
                         inv_inertia: Mat3::IDENTITY * 100.0,

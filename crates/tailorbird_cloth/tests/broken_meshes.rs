@@ -15,7 +15,7 @@ type Triangles = (Vec<Vec3>, Vec<u32>);
 fn windy() -> Sim {
     let mut sim = Sim::new();
     sim.app
-        .insert_resource(Wind::steady(Vec3::new(3.0, 0.0, 4.0)));
+        .insert_resource(ClothWind::steady(Vec3::new(3.0, 0.0, 4.0)));
     sim
 }
 
@@ -43,9 +43,12 @@ fn survives((positions, indices): Triangles) -> Result<(), TestCaseError> {
         }
         let status = sim.get::<ClothStatus>(entity);
         let state = sim.particles(entity);
-        let refused = status
-            .errors()
-            .any(|error| matches!(error, ClothErrorKind::Shape(ShapeError::NoTriangles { .. })));
+        let refused = status.errors().any(|error| {
+            matches!(
+                error,
+                ClothErrorKind::Shape(ClothShapeError::NoTriangles { .. })
+            )
+        });
         prop_assert_eq!(state.is_empty(), refused, "{:?}", status);
         prop_assert_eq!(refused, particles == 0);
         prop_assert!(state.len() <= count);
@@ -188,7 +191,7 @@ fn a_mesh_without_edges_or_with_equal_corners_neither_hangs_nor_asserts() {
     let refused = |positions: Vec<Vec3>, indices: Vec<u32>| {
         let built = Topology::build(&Cloth::mesh(positions, indices).shape, Vec3::ONE);
         assert!(
-            matches!(built, Err(ShapeError::NoTriangles { .. })),
+            matches!(built, Err(ClothShapeError::NoTriangles { .. })),
             "{built:?}"
         );
     };
@@ -209,7 +212,7 @@ fn a_mesh_without_edges_or_with_equal_corners_neither_hangs_nor_asserts() {
 fn a_moebius_strip_is_reported_and_keeps_its_lengths() {
     let (positions, indices) = twisted(120, 1);
     let mut sim = windy();
-    sim.app.insert_resource(Wind::vacuum());
+    sim.app.insert_resource(ClothWind::vacuum());
     let entity = sim.spawn((
         Cloth::mesh(positions, indices),
         ClothPins::particles([0, 1]),

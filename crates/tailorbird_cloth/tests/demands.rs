@@ -227,7 +227,7 @@ fn what_games_do_every_day_is_not_felt() {
     }
 }
 
-/// What is strained moves slowly; what a storm stretches does not.
+/// A strained cloth moves slowly; a cloth that a storm stretches does not.
 #[test]
 fn a_flag_in_a_storm_flaps() {
     for mesh in MESHES {

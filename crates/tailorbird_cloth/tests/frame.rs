@@ -1,4 +1,4 @@
-//! What a cloth feels of its entity's motion.
+//! Effect of an entity's motion on its cloth.
 
 #![cfg(test)]
 
@@ -15,7 +15,7 @@ fn curtain() -> Scene {
     Scene {
         size: Vec2::ONE,
         resolution: UVec2::splat(16),
-        pins: ClothPins::edges([GridEdge::Top]),
+        pins: ClothPins::edges([ClothEdge::Top]),
         gravity: Vec3::NEG_Y * G,
         ..Scene::default()
     }
@@ -104,7 +104,7 @@ fn a_turn_that_carries_along_flings() {
         );
         // Each particle by itself.
         sheet.settings(|settings| settings.iterations = 0);
-        sheet.sim.app.insert_resource(Wind::vacuum());
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
         let before = sheet.positions()[7 * 16];
         let steps = 6;
         drive(&mut sheet, steps, turn);
@@ -148,9 +148,9 @@ fn no_faster_than_the_limit() {
     assert!(way < 0.01, "{way} m");
 }
 
-/// What was told of teleports.
+/// Teleports that were told.
 #[derive(Resource, Default)]
-struct Told(Vec<TeleportMode>);
+struct Told(Vec<ClothTeleportMode>);
 
 fn listen(sheet: &mut Sheet) {
     sheet.sim.app.init_resource::<Told>();
@@ -162,7 +162,7 @@ fn listen(sheet: &mut Sheet) {
         });
 }
 
-fn told(sheet: &Sheet) -> &[TeleportMode] {
+fn told(sheet: &Sheet) -> &[ClothTeleportMode] {
     &sheet.sim.resource::<Told>().0
 }
 
@@ -182,7 +182,7 @@ fn a_teleported_cloth_keeps_its_shape_and_motion() {
         still.step();
     }
     assert_eq!(furthest(&moved.positions(), &still.positions()), 0.0);
-    assert_eq!(told(&moved), [TeleportMode::KeepShape]);
+    assert_eq!(told(&moved), [ClothTeleportMode::KeepShape]);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn a_teleported_cloth_is_reset_where_that_is_asked_for() {
             ..curtain()
         },
         ClothInertia {
-            teleport: TeleportMode::Reset,
+            teleport: ClothTeleportMode::Reset,
             ..ClothInertia::default()
         },
     );
@@ -205,7 +205,7 @@ fn a_teleported_cloth_is_reset_where_that_is_asked_for() {
     let way = furthest(&rest, &sheet.positions());
     // It has fallen for one step since.
     assert!(way < G * DT * DT, "{way} m");
-    assert_eq!(told(&sheet), [TeleportMode::Reset]);
+    assert_eq!(told(&sheet), [ClothTeleportMode::Reset]);
 }
 
 #[test]
@@ -220,11 +220,11 @@ fn a_short_way_is_a_teleport_where_the_game_says_so() {
         sheet.steps(10);
         sheet.change(short);
     }
-    put.change(|frame: &mut ClothFrame| frame.teleport(TeleportMode::KeepShape));
+    put.change(|frame: &mut ClothFrame| frame.teleport(ClothTeleportMode::KeepShape));
     dragged.steps(20);
     put.steps(20);
     assert_eq!(furthest(&still.positions(), &put.positions()), 0.0);
-    assert_eq!(told(&put), [TeleportMode::KeepShape]);
+    assert_eq!(told(&put), [ClothTeleportMode::KeepShape]);
     assert!(furthest(&still.positions(), &dragged.positions()) > 1e-3);
 }
 
@@ -248,7 +248,7 @@ fn draped() -> Scene {
     Scene {
         resolution: UVec2::splat(24),
         gravity: Vec3::NEG_Z * G,
-        pins: ClothPins::corners(GridCorner::TOP),
+        pins: ClothPins::corners(ClothCorner::TOP),
         sphere: Some((Vec3::new(0.0, 0.0, -0.55), 0.5)),
         ..Scene::default()
     }
@@ -308,7 +308,7 @@ fn time_passes_as_fast_as_it_is_told_to() {
             ..weightless()
         });
         sheet.change(|material: &mut ClothMaterial| material.damping = 0.0);
-        sheet.sim.app.insert_resource(Wind::vacuum());
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
         sheet.settings(|settings| settings.time_scale = scale);
         let before = sheet.positions()[0];
         sheet.steps(30);
@@ -341,8 +341,8 @@ fn a_hundred_kilometres_away_everything_is_the_same() {
         sheet
             .sim
             .app
-            .insert_resource(Wind::steady(Vec3::new(1.0, 0.0, 3.0)));
-        sheet.change(|frame: &mut ClothFrame| frame.teleport(TeleportMode::KeepShape));
+            .insert_resource(ClothWind::steady(Vec3::new(1.0, 0.0, 3.0)));
+        sheet.change(|frame: &mut ClothFrame| frame.teleport(ClothTeleportMode::KeepShape));
         for k in 0..120 {
             let at = Transform::from_translation(offset + Vec3::X * (k / 4) as f32 / 64.0);
             sheet.change(|t: &mut Transform| *t = at);

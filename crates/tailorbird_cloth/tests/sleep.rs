@@ -14,7 +14,7 @@ fn strip() -> Scene {
     Scene {
         size: Vec2::new(0.5, 1.0),
         resolution: UVec2::new(12, 24),
-        pins: ClothPins::edges([GridEdge::Top]),
+        pins: ClothPins::edges([ClothEdge::Top]),
         gravity: Vec3::NEG_Y * G,
         sphere: Some((Vec3::new(0.0, 0.0, -1.0), 0.2)),
         sleep: ClothSleep::default(),
@@ -91,7 +91,7 @@ fn a_pendulum_is_awake_at_its_turning_points() {
 fn waking_is_no_snap() {
     let mut sheet = sleeping();
     let before = sheet.positions();
-    sheet.change::<ClothRest>(ClothRest::wake);
+    sheet.change::<ClothSleepState>(ClothSleepState::wake);
     for _ in 0..30 {
         sheet.step();
         assert!(!sheet.is_asleep());
@@ -118,7 +118,7 @@ fn move_sphere(sheet: &mut Sheet, to: Vec3) {
 #[test]
 fn it_wakes_when_something_happens_to_it() {
     wakes("pins", |sheet| {
-        sheet.change(|pins: &mut ClothPins| *pins = ClothPins::corners(GridCorner::TOP));
+        sheet.change(|pins: &mut ClothPins| *pins = ClothPins::corners(ClothCorner::TOP));
     });
     wakes("grab", |sheet| {
         let hand = sheet.positions()[200] + Vec3::Z * 0.1;
@@ -145,7 +145,10 @@ fn it_wakes_when_something_happens_to_it() {
     wakes("gravity", |sheet| sheet.settings(|s| s.gravity *= 0.5));
     wakes("substeps", |sheet| sheet.settings(|s| s.substeps = Some(4)));
     wakes("wind", |sheet| {
-        sheet.sim.app.insert_resource(Wind::steady(Vec3::Z * 5.0));
+        sheet
+            .sim
+            .app
+            .insert_resource(ClothWind::steady(Vec3::Z * 5.0));
     });
     wakes("sphere comes", |sheet| {
         move_sphere(sheet, Vec3::new(0.0, 0.0, -0.15));
@@ -236,11 +239,11 @@ fn what_trembles_in_its_creases_falls_asleep() {
 /// Ten seconds after it fell on the sphere in still air, pinned at two corners or free: no more than 1 mm/s, root of the mean square of a
 /// second, and 1 cm/s, though it does not sleep.
 fn lies_still(n: u32) {
-    for pins in [ClothPins::default(), ClothPins::corners(GridCorner::TOP)] {
+    for pins in [ClothPins::default(), ClothPins::corners(ClothCorner::TOP)] {
         let free = pins == ClothPins::default();
         let mut sheet = Sheet::new(&Scene {
             sleep: ClothSleep::never(),
-            wind: Wind::default(),
+            wind: ClothWind::default(),
             pins,
             ..Scene::drape(UVec2::splat(n))
         });
@@ -299,5 +302,5 @@ fn what_is_told_to_settle_at_no_speed_does_not() {
         ..strip()
     });
     sheet.steps(600);
-    assert_eq!(sheet.get::<ClothRest>().seconds(), 0.0);
+    assert_eq!(sheet.get::<ClothSleepState>().seconds(), 0.0);
 }

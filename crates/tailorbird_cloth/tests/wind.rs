@@ -8,7 +8,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
-use tailorbird_cloth::{prelude::*, wind::BlowingWind};
+use tailorbird_cloth::{prelude::*, wind::ClothWindState};
 use tailorbird_test::{Scene, Sheet};
 
 /// A free sheet in still air, without gravity, as wide as it is high, in the plane z = 0 around the origin.
@@ -17,19 +17,19 @@ fn sheet(hz: f64) -> Sheet {
         size: Vec2::ONE,
         resolution: UVec2::splat(17),
         gravity: Vec3::ZERO,
-        wind: Wind::default(),
+        wind: ClothWind::default(),
         sleep: ClothSleep::default(),
         hz,
         ..Scene::default()
     })
 }
 
-fn blow(sheet: &mut Sheet, zone: WindZone, at: Transform) -> Entity {
+fn blow(sheet: &mut Sheet, zone: ClothWindZone, at: Transform) -> Entity {
     sheet.sim.spawn((zone, at))
 }
 
 fn air(sheet: &Sheet, point: Vec3) -> Vec3 {
-    sheet.sim.resource::<BlowingWind>().velocity_at(point)
+    sheet.sim.resource::<ClothWindState>().velocity_at(point)
 }
 
 /// Mean velocity of the particles whose x is on the given side of 0.
@@ -41,8 +41,8 @@ fn mean(sheet: &Sheet, right: bool) -> Vec3 {
     ours.iter().map(|i| particles.velocity(*i)).sum::<Vec3>() / ours.len() as f32
 }
 
-fn swirling(speed: f32, seed: u32) -> Turbulence {
-    Turbulence {
+fn swirling(speed: f32, seed: u32) -> ClothTurbulence {
+    ClothTurbulence {
         speed,
         scale: 1.5,
         seed,
@@ -53,7 +53,7 @@ fn swirling(speed: f32, seed: u32) -> Turbulence {
 fn air_moves_in_the_zone_and_nowhere_else() {
     let mut sheet = sheet(60.0);
     // Its border is the plane x = 0.
-    let zone = WindZone::cuboid(Vec3::splat(2.0), Vec3::Z * 5.0);
+    let zone = ClothWindZone::cuboid(Vec3::splat(4.0), Vec3::Z * 5.0);
     blow(&mut sheet, zone, Transform::from_xyz(2.0, 0.0, 0.0));
     sheet.step();
     assert_eq!(air(&sheet, Vec3::new(0.1, 0.5, 0.0)), Vec3::Z * 5.0);
@@ -65,9 +65,9 @@ fn air_moves_in_the_zone_and_nowhere_else() {
 #[test]
 fn the_border_of_a_zone_is_as_wide_as_it_is_told() {
     let mut sheet = sheet(60.0);
-    let zone = WindZone {
+    let zone = ClothWindZone {
         falloff: 0.5,
-        ..WindZone::sphere(2.0, Vec3::X * 4.0)
+        ..ClothWindZone::sphere(2.0, Vec3::X * 4.0)
     };
     blow(&mut sheet, zone, Transform::from_xyz(0.0, 0.0, 10.0));
     sheet.step();
@@ -90,7 +90,7 @@ fn the_border_of_a_zone_is_as_wide_as_it_is_told() {
 #[test]
 fn a_zone_turns_moves_and_grows_with_its_entity() {
     let mut sheet = sheet(60.0);
-    let zone = WindZone::cuboid(Vec3::new(0.5, 0.5, 2.0), Vec3::Z * 3.0);
+    let zone = ClothWindZone::cuboid(Vec3::new(1.0, 1.0, 4.0), Vec3::Z * 3.0);
     let at = Transform::from_xyz(10.0, 0.0, 0.0);
     let entity = blow(&mut sheet, zone, at);
     sheet.step();
@@ -117,15 +117,15 @@ fn a_zone_turns_moves_and_grows_with_its_entity() {
 #[test]
 fn zones_add_up_and_go_when_they_are_despawned() {
     let mut sheet = sheet(60.0);
-    sheet.sim.app.insert_resource(Wind::steady(Vec3::X));
+    sheet.sim.app.insert_resource(ClothWind::steady(Vec3::X));
     let zone = blow(
         &mut sheet,
-        WindZone::everywhere(Vec3::Y),
+        ClothWindZone::sphere(1e4, Vec3::Y),
         Transform::default(),
     );
     blow(
         &mut sheet,
-        WindZone::sphere(1.0, Vec3::Z),
+        ClothWindZone::sphere(1.0, Vec3::Z),
         Transform::default(),
     );
     sheet.step();
@@ -138,9 +138,9 @@ fn zones_add_up_and_go_when_they_are_despawned() {
 
 #[test]
 fn a_sheet_drifts_with_a_steady_wind_that_is_in_a_zone_as_with_one_that_is_not() {
-    let drift = |zone: Option<WindZone>, wind: Vec3| {
+    let drift = |zone: Option<ClothWindZone>, wind: Vec3| {
         let mut sheet = sheet(60.0);
-        sheet.sim.app.insert_resource(Wind::steady(wind));
+        sheet.sim.app.insert_resource(ClothWind::steady(wind));
         if let Some(zone) = zone {
             blow(&mut sheet, zone, Transform::default());
         }
@@ -149,16 +149,19 @@ fn a_sheet_drifts_with_a_steady_wind_that_is_in_a_zone_as_with_one_that_is_not()
     };
     let wind = Vec3::new(1.0, 0.5, 3.0);
     let global = drift(None, wind);
-    assert_eq!(global, drift(Some(WindZone::everywhere(wind)), Vec3::ZERO));
+    assert_eq!(
+        global,
+        drift(Some(ClothWindZone::sphere(1e4, wind)), Vec3::ZERO)
+    );
     // Not whole: the way of places that differ.
-    let cut = WindZone {
+    let cut = ClothWindZone {
         falloff: 1e-3,
-        ..WindZone::sphere(3.0, wind)
+        ..ClothWindZone::sphere(3.0, wind)
     };
     let far = drift(Some(cut), Vec3::ZERO);
-    let differ = WindZone {
+    let differ = ClothWindZone {
         turbulence: swirling(1e-6, 1),
-        ..WindZone::everywhere(wind)
+        ..ClothWindZone::sphere(1e4, wind)
     };
     let swirling = drift(Some(differ), Vec3::ZERO);
     for ((a, b), c) in global.iter().zip(&far).zip(&swirling) {
@@ -172,9 +175,9 @@ fn a_sheet_drifts_with_a_steady_wind_that_is_in_a_zone_as_with_one_that_is_not()
 #[test]
 fn turbulence_is_as_fast_as_it_is_told_and_without_divergence() {
     let mut sheet = sheet(60.0);
-    let zone = WindZone {
+    let zone = ClothWindZone {
         turbulence: swirling(2.0, 7),
-        ..WindZone::everywhere(Vec3::ZERO)
+        ..ClothWindZone::sphere(1e4, Vec3::ZERO)
     };
     blow(&mut sheet, zone, Transform::default());
     sheet.steps(50);
@@ -206,13 +209,13 @@ fn turbulence_is_as_fast_as_it_is_told_and_without_divergence() {
 fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
     let wind = |hz: f64, seed: u32| {
         let mut sheet = sheet(hz);
-        sheet.sim.app.insert_resource(Wind {
-            gusts: Gusts {
+        sheet.sim.app.insert_resource(ClothWind {
+            gusts: ClothGusts {
                 strength: 0.5,
                 period: 2.0,
             },
             turbulence: swirling(2.0, seed),
-            ..Wind::steady(Vec3::X * 3.0)
+            ..ClothWind::steady(Vec3::X * 3.0)
         });
         // Of the step that starts after 3 s.
         sheet.steps(3 * hz as u32 + 1);
@@ -224,9 +227,9 @@ fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
     assert!(slow.distance(wind(60.0, 2)) > 0.1);
 
     let mut sheet = sheet(240.0);
-    sheet.sim.app.insert_resource(Wind {
+    sheet.sim.app.insert_resource(ClothWind {
         turbulence: swirling(2.0, 3),
-        ..Wind::steady(Vec3::X * 3.0)
+        ..ClothWind::steady(Vec3::X * 3.0)
     });
     sheet.step();
     let mut before = air(&sheet, Vec3::ZERO);
@@ -243,14 +246,14 @@ fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
 fn what_sleeps_wakes_when_a_zone_comes_and_not_for_one_elsewhere() {
     let mut sheet = sheet(60.0);
     sheet.steps(120);
-    assert!(sheet.get::<ClothRest>().is_asleep());
-    let zone = WindZone {
+    assert!(sheet.get::<ClothSleepState>().is_asleep());
+    let zone = ClothWindZone {
         turbulence: swirling(1.0, 0),
-        ..WindZone::sphere(1.0, Vec3::Z)
+        ..ClothWindZone::sphere(1.0, Vec3::Z)
     };
     let entity = blow(&mut sheet, zone, Transform::from_xyz(5.0, 0.0, 0.0));
     sheet.steps(10);
-    assert!(sheet.get::<ClothRest>().is_asleep());
+    assert!(sheet.get::<ClothSleepState>().is_asleep());
     let mut place = sheet
         .sim
         .app
@@ -259,48 +262,51 @@ fn what_sleeps_wakes_when_a_zone_comes_and_not_for_one_elsewhere() {
         .unwrap();
     place.translation.x = 1.0;
     sheet.step();
-    assert!(!sheet.get::<ClothRest>().is_asleep());
+    assert!(!sheet.get::<ClothSleepState>().is_asleep());
 }
 
 #[test]
 fn a_wrong_zone_is_reported_and_blows_not() {
-    let right = WindZone::sphere(1.0, Vec3::X);
+    let right = ClothWindZone::sphere(1.0, Vec3::X);
     let wrong = [
         (
-            "WindZone.velocity",
-            WindZone {
+            "ClothWindZone.velocity",
+            ClothWindZone {
                 velocity: Vec3::NAN,
                 ..right
             },
         ),
         (
-            "WindZone.falloff",
-            WindZone {
+            "ClothWindZone.falloff",
+            ClothWindZone {
                 falloff: -1.0,
                 ..right
             },
         ),
-        ("WindZone.shape.radius", WindZone::sphere(0.0, Vec3::X)),
         (
-            "WindZone.shape.half_size",
-            WindZone::cuboid(Vec3::new(1.0, -1.0, 1.0), Vec3::X),
+            "ClothWindZone.shape.radius",
+            ClothWindZone::sphere(0.0, Vec3::X),
         ),
         (
-            "WindZone.turbulence.scale",
-            WindZone {
-                turbulence: Turbulence {
+            "ClothWindZone.shape.size",
+            ClothWindZone::cuboid(Vec3::new(1.0, -1.0, 1.0), Vec3::X),
+        ),
+        (
+            "ClothWindZone.turbulence.scale",
+            ClothWindZone {
+                turbulence: ClothTurbulence {
                     scale: 0.0,
-                    ..Turbulence::default()
+                    ..ClothTurbulence::default()
                 },
                 ..right
             },
         ),
         (
-            "WindZone.gusts.period",
-            WindZone {
-                gusts: Gusts {
+            "ClothWindZone.gusts.period",
+            ClothWindZone {
+                gusts: ClothGusts {
                     period: f32::NAN,
-                    ..Gusts::default()
+                    ..ClothGusts::default()
                 },
                 ..right
             },
@@ -319,7 +325,7 @@ fn a_wrong_zone_is_reported_and_blows_not() {
             .sim
             .app
             .world_mut()
-            .get_mut::<WindZone>(entity)
+            .get_mut::<ClothWindZone>(entity)
             .unwrap() = right;
         sheet.step();
         assert_eq!(air(&sheet, Vec3::ZERO), Vec3::X);
@@ -342,10 +348,10 @@ proptest! {
         mean in 0.0_f32..20.0,
     ) {
         let mut sheet = sheet(60.0);
-        let zone = WindZone {
+        let zone = ClothWindZone {
             falloff,
-            turbulence: Turbulence { speed, scale, seed },
-            ..WindZone::sphere(radius, Vec3::new(0.5, 0.2, 1.0).normalize() * mean)
+            turbulence: ClothTurbulence { speed, scale, seed },
+            ..ClothWindZone::sphere(radius, Vec3::new(0.5, 0.2, 1.0).normalize() * mean)
         };
         blow(&mut sheet, zone, Transform::from_xyz(x, 0.0, 0.0));
         sheet.steps(40);

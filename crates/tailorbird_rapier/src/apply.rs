@@ -79,7 +79,7 @@ pub(crate) fn write_transforms(world: &mut World) {
     }
 }
 
-/// What happens to a body.
+/// Change of a body.
 struct Change {
     linear_velocity: Vec3,
     angular_velocity: Vec3,
@@ -100,7 +100,7 @@ impl Change {
     }
 }
 
-/// What a body does in answer to the push of a step.
+/// Answer of a body to the push of a step.
 fn answer(
     body: &RigidBody,
     load: &mut ClothLoad,

@@ -19,7 +19,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::shape::{self, isometry};
 
-/// Where a collider is in the world, with its body where that is now.
+/// Pose of a collider in the world, with the present pose of its body.
 pub(crate) fn pose(collider: &Collider, bodies: &RapierRigidBodySet) -> Isometry3d {
     let body = collider.parent().and_then(|body| bodies.bodies.get(body));
     match (body, collider.position_wrt_parent()) {
@@ -41,12 +41,12 @@ pub(crate) fn inverse_mass(body: &RigidBody) -> (Vec3, Mat3) {
     (properties.effective_inv_mass, inv_inertia)
 }
 
-/// What cloth has to know of a body, if cloth can push it at all.
-fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
+/// Properties of a body for cloth, if cloth can push it at all.
+fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ClothColliderBody> {
     if !body.is_dynamic() || !body.is_enabled() {
         return None;
     }
-    let still = ColliderBody {
+    let still = ClothColliderBody {
         body: entity,
         inv_mass: Vec3::ZERO,
         inv_inertia: Mat3::ZERO,
@@ -58,7 +58,7 @@ fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
         return Some(still);
     }
     let (inv_mass, inv_inertia) = inverse_mass(body);
-    Some(ColliderBody {
+    Some(ClothColliderBody {
         inv_mass,
         inv_inertia,
         linear_velocity: body.linvel(),
@@ -67,11 +67,11 @@ fn for_cloth(entity: Entity, body: &RigidBody) -> Option<ColliderBody> {
     })
 }
 
-/// Pushes Rapier's colliders that are near a cloth to [`ExternalColliders`].
+/// Pushes Rapier's colliders that are near a cloth to [`ClothExternalColliders`].
 pub(crate) fn push_colliders(
     mut cloths: ClothBoxes,
     mut cache: Local<ShapeCache<SharedShape>>,
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     worlds: Query<(&RapierContextColliders, &RapierRigidBodySet)>,
     mut loads: Query<&mut ClothLoad>,
     colliders: Query<
@@ -138,7 +138,7 @@ pub(crate) fn push_colliders(
         let address = Arc::as_ptr(&shape.0).cast::<()>() as usize;
         let pieces = cache.pieces(address, shape, || shape::pieces(&**shape));
         for (part, piece) in pieces.iter().enumerate() {
-            external.push(ExternalCollider {
+            external.push(ClothExternalCollider {
                 entity,
                 part: part as u32,
                 shape: piece.shape.clone(),

@@ -24,7 +24,7 @@
 //! // A sheet that is held at its edges, and a ball above it.
 //! app.world_mut().spawn((
 //!     Cloth::grid(Vec2::splat(2.0), UVec2::splat(32)).centered(),
-//!     ClothPins::edges([GridEdge::Top, GridEdge::Bottom, GridEdge::Left, GridEdge::Right]),
+//!     ClothPins::edges([ClothEdge::Top, ClothEdge::Bottom, ClothEdge::Left, ClothEdge::Right]),
 //!     Transform::from_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)),
 //! ));
 //! app.world_mut().spawn((

@@ -9,7 +9,7 @@ use bevy_rapier3d::parry::{
 };
 use tailorbird_bridge::Piece;
 use tailorbird_cloth::{
-    collider::{ColliderShape, ConvexHull, HeightField, TriMesh},
+    collider::{ClothColliderShape, ConvexHull, HeightField, TriMesh},
     error::ClothErrorKind,
 };
 use tracing::warn;
@@ -32,7 +32,7 @@ pub(crate) fn isometry(pose: &Pose) -> Isometry3d {
 }
 
 fn add(shape: &dyn Shape, at: Isometry3d, margin: f32, pieces: &mut Vec<Piece>) {
-    let mut push = |at: Isometry3d, shape: ColliderShape| {
+    let mut push = |at: Isometry3d, shape: ClothColliderShape| {
         pieces.push(Piece {
             margin,
             ..Piece::new(at, shape)
@@ -42,15 +42,15 @@ fn add(shape: &dyn Shape, at: Isometry3d, margin: f32, pieces: &mut Vec<Piece>) 
         TypedShape::Ball(ball) => {
             push(
                 at,
-                ColliderShape::Sphere {
+                ClothColliderShape::Sphere {
                     radius: ball.radius,
                 },
             );
             return;
         }
         TypedShape::Cuboid(cuboid) => {
-            let half_size = cuboid.half_extents;
-            push(at, ColliderShape::Cuboid { half_size });
+            let size = 2.0 * cuboid.half_extents;
+            push(at, ClothColliderShape::Cuboid { size });
             return;
         }
         TypedShape::Capsule(capsule) => {
@@ -72,13 +72,13 @@ fn add(shape: &dyn Shape, at: Isometry3d, margin: f32, pieces: &mut Vec<Piece>) 
         }
         TypedShape::HalfSpace(half_space) => {
             let to = Isometry3d::from_rotation(Quat::from_rotation_arc(Vec3::Y, half_space.normal));
-            push(at * to, ColliderShape::HalfSpace);
+            push(at * to, ClothColliderShape::HalfSpace);
             return;
         }
         TypedShape::Cylinder(cylinder) => {
             push(
                 at,
-                ColliderShape::Cylinder {
+                ClothColliderShape::Cylinder {
                     radius: cylinder.radius,
                     half_height: cylinder.half_height,
                 },
@@ -127,25 +127,28 @@ fn add(shape: &dyn Shape, at: Isometry3d, margin: f32, pieces: &mut Vec<Piece>) 
 }
 
 /// All within a radius of the line between two points \[m\].
-fn stick(a: Vec3, b: Vec3, radius: f32) -> (Isometry3d, ColliderShape) {
+fn stick(a: Vec3, b: Vec3, radius: f32) -> (Isometry3d, ClothColliderShape) {
     let axis = b - a;
     let half_length = 0.5 * axis.length();
     let turn = axis.try_normalize().map_or(Quat::IDENTITY, |axis| {
         Quat::from_rotation_arc(Vec3::Y, axis)
     });
-    let shape = ColliderShape::Capsule {
+    let shape = ClothColliderShape::Capsule {
         radius,
         half_length,
     };
     (Isometry3d::new(0.5 * (a + b), turn), shape)
 }
 
-fn hull(points: &[Vec3]) -> Result<ColliderShape, ClothErrorKind> {
-    ConvexHull::new(points).map(ColliderShape::ConvexHull)
+fn hull(points: &[Vec3]) -> Result<ClothColliderShape, ClothErrorKind> {
+    ConvexHull::new(points).map(ClothColliderShape::ConvexHull)
 }
 
-fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<ColliderShape, ClothErrorKind> {
-    TriMesh::new(positions, triangles).map(ColliderShape::TriMesh)
+fn mesh(
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+) -> Result<ClothColliderShape, ClothErrorKind> {
+    TriMesh::new(positions, triangles).map(ClothColliderShape::TriMesh)
 }
 
 /// Corners of a cone: those of the circle below, and the tip \[m\].
@@ -158,7 +161,7 @@ fn cone_corners(radius: f32, half_height: f32) -> Vec<Vec3> {
 }
 
 /// Terrain; one with holes, or turned inside out, is a mesh.
-fn height_field(field: &ParryHeightField) -> Result<ColliderShape, ClothErrorKind> {
+fn height_field(field: &ParryHeightField) -> Result<ClothColliderShape, ClothErrorKind> {
     let scale = field.scale();
     let whole = field.cells_statuses().data().iter().all(|cell| {
         !cell.contains(bevy_rapier3d::parry::shape::HeightFieldCellStatus::CELL_REMOVED)
@@ -174,7 +177,7 @@ fn height_field(field: &ParryHeightField) -> Result<ColliderShape, ClothErrorKin
         .map(|(row, column)| grid[(row, column)] * scale.y)
         .collect();
     let size = Vec2::new(scale.x, scale.z);
-    HeightField::new(heights, columns as u32, size).map(ColliderShape::HeightField)
+    HeightField::new(heights, columns as u32, size).map(ClothColliderShape::HeightField)
 }
 
 #[cfg(test)]
@@ -193,7 +196,7 @@ mod tests {
     fn capsules_lie_along_their_segment() {
         let (a, b) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 4.0));
         let piece = only(&Collider::capsule(a, b, 0.5));
-        let ColliderShape::Capsule {
+        let ClothColliderShape::Capsule {
             radius,
             half_length,
         } = piece.shape
@@ -209,8 +212,8 @@ mod tests {
     fn round_shapes_get_a_margin() {
         let piece = only(&Collider::round_cuboid(0.5, 1.0, 1.5, 0.1));
         assert_eq!(piece.margin, 0.1);
-        let half_size = Vec3::new(0.5, 1.0, 1.5);
-        assert_eq!(piece.shape, ColliderShape::Cuboid { half_size });
+        let size = Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(piece.shape, ClothColliderShape::Cuboid { size });
     }
 
     #[test]
@@ -220,7 +223,7 @@ mod tests {
         let collider = Collider::heightfield(heights, 2, 3, Vec3::new(4.0, 2.0, 6.0));
         let parry = collider.raw.as_heightfield().unwrap();
         let piece = only(&collider);
-        let ColliderShape::HeightField(field) = piece.shape else {
+        let ClothColliderShape::HeightField(field) = piece.shape else {
             panic!("{piece:?}");
         };
         assert_eq!(field.size(), Vec2::new(4.0, 6.0));
@@ -255,7 +258,7 @@ mod tests {
         let all = pieces(&*Collider::compound(parts).raw);
         assert_eq!(all.len(), 2);
         assert!((all[0].at * Vec3::ZERO).distance(Vec3::X) < 1e-6);
-        let ColliderShape::ConvexHull(cone) = &all[1].shape else {
+        let ClothColliderShape::ConvexHull(cone) = &all[1].shape else {
             panic!("{all:?}");
         };
         // π r² h/3, less what is cut off between the corners of the circle.

@@ -15,7 +15,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box around all particles, now and a step ago; `None` where there are none.
+    /// Box around all particles, now and a step ago; `None` without particles.
     pub fn around(level: Level, particles: &Particles) -> Option<Self> {
         if particles.is_empty() {
             return None;

@@ -1,4 +1,4 @@
-//! A cloth in a step: what its stages read and write.
+//! A cloth in a step: data that its stages read and write.
 
 use crate::{
     coefficients::{Coefficients, Method},
@@ -12,25 +12,25 @@ use crate::{
     topology::Topology,
 };
 
-/// A cloth in a step: what its stages read and write.
+/// A cloth in a step: data that its stages read and write.
 pub struct Cloth<'a> {
-    /// What is computed once from the rest shape.
+    /// Topology, computed once from the rest shape.
     pub topology: &'a Topology,
-    /// What it resists with.
+    /// Coefficients of the material.
     pub coefficients: &'a Coefficients,
-    /// How its constraints are solved.
+    /// Method that solves the constraints.
     pub method: Method,
-    /// Which colliders it meets.
+    /// Layers, which decide what colliders it meets.
     pub layers: Layers,
-    /// How far particles get from pins.
+    /// Largest distances from pins.
     pub tethers: &'a Tethers,
-    /// What others hold.
+    /// Attachments.
     pub holds: &'a mut Holds,
-    /// How far particles may get from targets, where some have any.
+    /// Motion constraints, if there are any.
     pub limits: Option<&'a MotionLimits>,
-    /// With which force it pulls at what holds it, where that is measured.
+    /// Forces on its holders, if they are measured.
     pub forces: Option<&'a mut PinForces>,
-    /// What its particles' coordinates refer to.
+    /// Frame of the particles' coordinates.
     pub frame: &'a mut Frame,
     /// Its particles.
     pub particles: &'a mut Particles,

@@ -1,6 +1,6 @@
-//! What a fabric resists with.
+//! Coefficients of a fabric.
 
-/// What a fabric resists with, and what resists it.
+/// Coefficients of a fabric and of its contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficients {
     /// Mass per area [kg/m²].
@@ -19,11 +19,11 @@ pub struct Coefficients {
     pub damping: f32,
     /// Coulomb friction [-].
     pub friction: f32,
-    /// The distance to keep from colliders \[m\].
+    /// Distance to keep from colliders \[m\].
     pub margin: f32,
 }
 
-/// How the constraints are solved.
+/// Method by which the constraints are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Whole lines of edges at once.

@@ -1,4 +1,4 @@
-//! What is wrong with a rest shape.
+//! Errors of a rest shape.
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_reflect::prelude::*;
@@ -7,7 +7,7 @@ use thiserror::Error;
 /// A rest shape is wrong: the field, its value, and what is allowed.
 #[derive(Clone, Debug, PartialEq, Error, Reflect)]
 #[non_exhaustive]
-pub enum ShapeError {
+pub enum ClothShapeError {
     /// A grid's size is zero, negative or not finite.
     #[error("Cloth grid size is {value} m, must be positive and finite in both directions")]
     Size {
@@ -44,6 +44,14 @@ pub enum ShapeError {
         /// The distance \[m\].
         value: f32,
     },
+    /// There are texture coordinates, but not one for each vertex.
+    #[error("Cloth mesh has {value} uvs, must be none or one for each of {vertices} vertices")]
+    UvCount {
+        /// The number of texture coordinates.
+        value: usize,
+        /// The number of vertices.
+        vertices: usize,
+    },
     /// The number of indices is not a multiple of three.
     #[error("Cloth mesh has {value} indices, must be a multiple of 3")]
     IndexCount {
@@ -55,7 +63,7 @@ pub enum ShapeError {
         "Cloth mesh indices[{at}] is {value}, must be below the number of vertices, {vertices}"
     )]
     IndexOutOfRange {
-        /// Where in the index list.
+        /// Position in the index list.
         at: usize,
         /// The index.
         value: u32,
@@ -85,7 +93,7 @@ pub enum ShapeError {
         "Cloth mesh has {count} triangles without area, the first is triangle {first}; triangles must have three distinct corners that are not in a line: dropped"
     )]
     DegenerateTriangles {
-        /// How many.
+        /// Number of triangles.
         count: usize,
         /// The first of them.
         first: usize,
@@ -95,7 +103,7 @@ pub enum ShapeError {
         "Cloth mesh has {count} triangles twice, the first is triangle {first}; each must be there once: dropped"
     )]
     DuplicateTriangles {
-        /// How many.
+        /// Number of triangles.
         count: usize,
         /// The first of them.
         first: usize,

@@ -19,7 +19,7 @@ pub struct Frame {
     /// From `start` to `current` \[m\]: exact where coordinates of the world are not.
     #[doc(hidden)]
     pub offset: Vec3,
-    /// How much of the motion of this step is felt.
+    /// Part of the motion of this step that particles feel.
     #[doc(hidden)]
     #[reflect(ignore)]
     pub felt: Felt,
@@ -27,27 +27,27 @@ pub struct Frame {
     #[doc(hidden)]
     #[reflect(ignore)]
     pub taken: Option<Taken>,
-    /// How far the frame was put elsewhere before this step.
+    /// Displacement by which the frame was put elsewhere before this step.
     #[doc(hidden)]
     #[reflect(ignore)]
     pub jump: Option<Isometry3d>,
 }
 
-/// How free particles were expressed anew when the frame moved in this substep.
+/// Change of coordinates of the free particles when the frame moved in this substep.
 #[derive(Clone, Copy, Debug)]
 pub struct Taken {
-    /// How the frame was turned, and how far from where the step began.
+    /// Rotation of the frame before, and its offset from the start of the step.
     pub from: (Quat, Vec3),
-    /// How particles that do not follow the frame by themselves were taken into it.
+    /// Rigid motion of the particles that do not follow the frame by themselves.
     pub motion: Isometry3d,
 }
 
-/// How much of the motion of a step is felt.
+/// Part of the motion of a step that particles feel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
-    /// Of the way [-].
+    /// Of the translation [-].
     pub linear: f32,
-    /// Of the turn [-].
+    /// Of the rotation [-].
     pub angular: f32,
     /// The angular velocity, in world axes, whose centrifugal acceleration acts beside that [rad/s].
     pub spin: Vec3,
@@ -64,7 +64,7 @@ impl Default for Felt {
 }
 
 impl Felt {
-    /// Whether it is the whole motion.
+    /// Returns whether it is the whole motion.
     pub fn is_all(&self) -> bool {
         *self == Self::default()
     }
@@ -80,7 +80,7 @@ pub fn shortest(rotation: Quat) -> Quat {
 }
 
 impl Frame {
-    /// Where the frame is in the world.
+    /// Pose of the frame in the world.
     pub fn isometry(&self) -> Isometry3d {
         self.current
     }
@@ -111,13 +111,13 @@ impl Frame {
         self.current.rotation.inverse() * vector
     }
 
-    /// How the entity was turned where it was put elsewhere before this step; none where it was not.
+    /// Rotation by which the entity was put elsewhere before this step; none if it was not.
     pub fn jump_turn(&self) -> Option<Quat> {
         self.jump.map(|jump| jump.rotation)
     }
 
-    /// Where something that goes from `start` to `end` in this step begins for a cloth that was put elsewhere with its entity:
-    /// what was put elsewhere with it was as near to it before.
+    /// Start of an object that moves from `start` to `end` in this step, for a cloth that was put elsewhere with its entity: an object
+    /// that was put elsewhere with it was as near to it before.
     pub fn start_of(&self, start: Isometry3d, end: Isometry3d) -> Isometry3d {
         let Some(jump) = self.jump else {
             return start;
@@ -131,8 +131,8 @@ impl Frame {
         }
     }
 
-    /// The way during a substep, in the frame as it is, of something that goes through the world from `start` to `end` in this
-    /// step. It begins as far from the particles as it then was.
+    /// Path during a substep, in the frame as it is, of an object that moves through the world from `start` to `end` in this step. It
+    /// begins as far from the particles as the object then was.
     pub fn way_to_frame(
         &self,
         start: Isometry3d,
@@ -164,7 +164,7 @@ impl Frame {
         [begin, into(now, at(fractions.1))]
     }
 
-    /// What is felt of the motion of this step, in the frame's axes at its start.
+    /// The felt part of the motion of this step, in the frame's axes at its start.
     pub fn felt_motion(&self) -> Isometry3d {
         let motion = self.start.inverse() * self.end;
         Isometry3d::new(
@@ -173,7 +173,7 @@ impl Frame {
         )
     }
 
-    /// Whether the frame moves during this step.
+    /// Returns whether the frame moves during this step.
     pub fn is_moving(&self) -> bool {
         self.start != self.end
     }

@@ -1,10 +1,9 @@
-//! How much longer than at rest the threads of a strained cloth may be.
+//! Additional length of the threads of a strained cloth.
 //!
-//! Where holds or colliders ask for more than a fabric has, its lines contradict each other: each takes what it can from those that cross
-//! it, and single edges take what is left. So the fabric is granted what is asked for: a strain along the warp and one along the weft for
-//! each particle, spread over its surroundings, that grows towards the mean strain around there. Then the lines agree again, and the demand
-//! is shared evenly. What was granted is taken back at a rate, whether or not the demand still stands; so what was stretched comes back without
-//! becoming speed.
+//! If holds or colliders ask for more than a fabric has, its lines contradict each other: each takes what it can from those that cross
+//! it, and single edges take the rest. So the fabric is granted a strain along the warp and one along the weft for each particle, smoothed
+//! over its neighbourhood, that grows towards the mean strain there. Then the lines agree again, and the demand is shared evenly. The grant
+//! is taken back at a rate, whether or not the demand lasts; so stretch comes back without becoming speed.
 
 mod trial;
 
@@ -22,34 +21,34 @@ use crate::{
     },
 };
 
-/// The rate at which what is granted grows towards what is asked for [1/s].
+/// Rate at which the grant grows towards the demand [1/s].
 const GROWTH: f32 = 40.0;
 
-/// The rates at which it is taken back: of all [1/s], of it [1/s], of its square [1/s].
+/// Rates at which the grant is taken back: constant [1/s], of its value [1/s], of its square [1/s].
 const TAKEN_BACK: [f32; 3] = [0.05, 1.5, 6.0];
 
-/// How many times as fast what no edge needs is taken back [-].
+/// Factor of these rates while no edge is strained [-].
 const UNUSED: f32 = 4.0;
 
-/// How fast what is shorter than it may be is made longer [1/s].
+/// Rate at which an edge that is shorter than its granted length is made longer [1/s].
 const PUSH: f32 = 0.5;
 
-/// What a strained fabric bears without being granted anything [-].
+/// Strain that a strained fabric bears without a grant [-].
 const BORNE: f32 = 0.01;
 
-/// How many times what is asked for is averaged with that of neighbours.
+/// Number of times that the demand is averaged with that of neighbours.
 const ROUNDS: usize = 4;
 
-/// What is granted at most [-].
+/// Largest granted strain [-].
 const MOST: f32 = 1.0;
 
-/// More than this in the mean is much [-].
+/// Mean grant above which it is much [-].
 const MUCH: f32 = 5e-3;
 
-/// Less than this is nothing [-].
+/// Largest grant below which there is none [-].
 const LEAST: f32 = 1e-3;
 
-/// What holds a cloth together.
+/// Edges that hold a cloth together.
 #[derive(Clone, Copy)]
 pub enum Threads<'a> {
     /// Rows and columns.
@@ -58,25 +57,25 @@ pub enum Threads<'a> {
     Mesh(&'a Fabric),
 }
 
-/// What is granted to a cloth; empty where nothing is.
+/// Granted strain of a cloth; empty where nothing is granted.
 #[derive(Clone, Debug, Default)]
 pub struct Grant {
-    /// For each particle the strain along warp and weft [-].
+    /// Strain along warp and weft of each particle [-].
     strain: Vec<[f32; 2]>,
-    /// The largest of those, and their mean [-].
+    /// Largest of those strains, and their mean [-].
     largest: f32,
     mean: f32,
-    /// For each slot of the chains how long its edge may be; of a sheet for each particle the edge to the next of its row \[m\].
+    /// Granted length of the edge of each slot of the chains \[m\]; of a sheet, for each particle the edge to the next of its row.
     chains: Vec<f32>,
-    /// The same for each spring across the threads; for each particle the diagonals of the cell beyond it.
+    /// Granted length of each spring across the threads \[m\]; of a sheet, for each particle the diagonals of the cell beyond it.
     springs: Vec<f32>,
-    /// For each particle of a sheet the same for the edge to the next of its column.
+    /// For each particle of a sheet, the granted length of the edge to the next of its column \[m\].
     columns: Vec<f32>,
-    /// Whether a demand stands, or a load pulls.
+    /// Trial that tells a demand from a load.
     trial: Trial,
-    /// What the strain of the edges of particles says of warp and weft; scratch.
-    around: [Vec<Neighborhood>; 2],
-    /// The strain that is asked for around each particle, and not more than there is [-]; scratch.
+    /// Normal equations of the strain around each particle; scratch.
+    neighborhoods: [Vec<Neighborhood>; 2],
+    /// Strain demanded around each particle, and no more than there is [-]; scratch.
     asked: Vec<[f32; 2]>,
 }
 
@@ -88,7 +87,7 @@ struct Neighborhood {
     matrix: [f32; 3],
     /// Σ c ε, Σ (1 − c) ε.
     side: [f32; 2],
-    /// How many.
+    /// Number of edges.
     count: f32,
 }
 
@@ -112,7 +111,7 @@ impl Neighborhood {
         self.count += part * other.count;
     }
 
-    /// The strains (u, v), drawn a little towards 0; 0 where nothing is known.
+    /// Strains (u, v), drawn a little towards 0; 0 without edges.
     fn strain(&self) -> [f32; 2] {
         if self.count == 0.0 {
             return [0.0; 2];
@@ -127,28 +126,28 @@ impl Neighborhood {
 }
 
 impl Grant {
-    /// Nothing is granted.
+    /// Returns whether nothing is granted.
     pub fn is_empty(&self) -> bool {
         self.strain.is_empty()
     }
 
-    /// Whether much is granted, and not in some place alone.
+    /// Returns whether much is granted, and not in one place alone.
     pub fn is_much(&self) -> bool {
         self.mean > MUCH
     }
 
-    /// The largest strain that is granted [-].
+    /// Largest granted strain [-].
     pub fn largest(&self) -> f32 {
         self.largest
     }
 
-    /// The strain that is granted, as a number for all of the cloth [-]: it if that is the same everywhere, and less where it is so in some
-    /// place alone.
+    /// Granted strain as one number for all of the cloth [-]: the strain itself if it is the same everywhere, and less if it is granted in
+    /// one place alone.
     pub fn overall(&self) -> f32 {
         (self.mean * self.largest).sqrt()
     }
 
-    /// How long the edges of the chains may be \[m\].
+    /// Granted lengths of the edges of the chains \[m\].
     pub fn chains<'a>(&'a self, chains: &'a Chains) -> &'a [f32] {
         if self.chains.len() == chains.rest_length.len() {
             &self.chains
@@ -157,7 +156,7 @@ impl Grant {
         }
     }
 
-    /// How long the springs across the threads may be \[m\].
+    /// Granted lengths of the springs across the threads \[m\].
     pub fn springs<'a>(&'a self, springs: &'a Springs) -> &'a [f32] {
         if self.springs.len() == springs.rest_length.len() {
             &self.springs
@@ -166,7 +165,7 @@ impl Grant {
         }
     }
 
-    /// How long the edges of a sheet may be; none where they are as at rest.
+    /// Granted lengths of the edges of a sheet; `None` where they are as at rest.
     pub fn sheet(&mut self, particles: usize) -> Option<Lengths<'_>> {
         (self.columns.len() == particles && particles > 0).then(|| Lengths {
             rows: Shared::new(&mut self.chains),
@@ -175,7 +174,7 @@ impl Grant {
         })
     }
 
-    /// Nothing is granted any more.
+    /// Withdraws the whole grant.
     pub fn clear(&mut self) {
         self.strain.clear();
         (self.largest, self.mean) = (0.0, 0.0);
@@ -183,24 +182,24 @@ impl Grant {
         self.rescale();
     }
 
-    /// The cloth has another scale: how long edges may be is known at the end of the next step.
+    /// Forgets the lengths, because the cloth has another scale: they are computed again at the end of the next step.
     pub fn rescale(&mut self) {
         self.chains.clear();
         self.springs.clear();
         self.columns.clear();
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.strain)
             + heap(&self.asked)
             + heap(&self.chains)
             + heap(&self.springs)
             + heap(&self.columns)
-            + self.around.iter().map(heap).sum::<usize>()
+            + self.neighborhoods.iter().map(heap).sum::<usize>()
     }
 
-    /// Grants what is asked for, where more than the fabric has is, and takes back what was, at the end of a step.
+    /// Grants the demand of a cloth that is asked for more than the fabric has, and takes back what was granted, at the end of a step.
     pub fn renew(&mut self, threads: Threads, position: &Points, seconds: f32, effort: Effort) {
         let n = threads.particles();
         if self.strain.len() != n {
@@ -225,7 +224,7 @@ impl Grant {
             }
         }
         self.asked.resize(n, [0.0; 2]);
-        // Nobody needs it.
+        // Unused grants are taken back faster.
         let times = if effort.is_strained() { 1.0 } else { UNUSED };
         self.largest = 0.0;
         let mut sum = 0.0;
@@ -246,41 +245,42 @@ impl Grant {
         self.lengthen(threads, position, seconds);
     }
 
-    /// What is asked for around each particle: the mean over its surroundings. Where there is less, others have more.
+    /// Measures the demand around each particle: the mean strain of its neighbourhood. Where there is less, others have more.
     fn measure(&mut self, threads: Threads, position: &Points) {
-        let [around, next] = &mut self.around;
-        around.clear();
-        around.resize(threads.particles(), Neighborhood::default());
+        let [neighborhoods, next] = &mut self.neighborhoods;
+        neighborhoods.clear();
+        neighborhoods.resize(threads.particles(), Neighborhood::default());
         threads.each_edge(|ends, rest_length, c| {
             let [a, b] = ends.map(|i| position.get(i as usize));
             let strain = (a.distance(b) / rest_length - 1.0).min(2.0 * MOST);
             for i in ends {
-                around[i as usize].add(c, strain);
+                neighborhoods[i as usize].add(c, strain);
             }
         });
         for round in 0..ROUNDS {
-            next.clone_from(around);
+            next.clone_from(neighborhoods);
             threads.each_edge(|ends, _, _| {
                 let [a, b] = ends.map(|i| i as usize);
-                next[a].add_part(&around[b], 1.0);
-                next[b].add_part(&around[a], 1.0);
+                next[a].add_part(&neighborhoods[b], 1.0);
+                next[b].add_part(&neighborhoods[a], 1.0);
             });
-            for (mean, sum) in around.iter_mut().zip(&*next) {
+            for (mean, sum) in neighborhoods.iter_mut().zip(&*next) {
                 *mean = Neighborhood::default();
                 mean.add_part(sum, 1.0 / sum.count.max(1.0));
             }
             if round == 0 {
-                self.asked.extend(around.iter().map(Neighborhood::strain));
+                self.asked
+                    .extend(neighborhoods.iter().map(Neighborhood::strain));
             }
         }
-        for (asked, around) in self.asked.iter_mut().zip(around) {
-            for (asked, mean) in asked.iter_mut().zip(around.strain()) {
+        for (asked, neighborhoods) in self.asked.iter_mut().zip(neighborhoods) {
+            for (asked, mean) in asked.iter_mut().zip(neighborhoods.strain()) {
                 *asked = asked.min(mean);
             }
         }
     }
 
-    /// How long edges are to be.
+    /// Computes the lengths of the edges.
     fn lengthen(&mut self, threads: Threads, position: &Points, seconds: f32) {
         let strain = &self.strain;
         let push = PUSH * seconds;
@@ -334,7 +334,7 @@ impl Grant {
     }
 }
 
-/// The rate at which a strain that is granted is taken back [1/s].
+/// Rate at which a granted strain is taken back [1/s].
 fn taken_back(strain: f32) -> f32 {
     let [of_all, of_it, of_square] = TAKEN_BACK;
     of_all + strain * (of_it + strain * of_square)
@@ -348,7 +348,7 @@ impl Threads<'_> {
         }
     }
 
-    /// Calls `f` with the ends, rest length \[m\] and [`Chains::along_warp`] of each edge; of a sheet without the diagonals.
+    /// Calls `f` with the ends, rest length \[m\] and [`Chains::along_warp`] of each edge; for a sheet without the diagonals.
     fn each_edge(self, mut f: impl FnMut([u32; 2], f32, f32)) {
         match self {
             Self::Sheet(lattice) => {

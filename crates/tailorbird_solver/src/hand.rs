@@ -2,12 +2,12 @@
 
 use crate::{particles::Particles, topology::Topology};
 
-/// How far the held particle gets from a neighbour, as a multiple of their distance at rest.
+/// Largest distance of the held particle from a neighbour, as a multiple of their distance at rest.
 pub const MOST_STRETCH: f32 = 1.1;
 
 impl Particles {
-    /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls those
-    /// around it along. `left` substeps remain, this one included.
+    /// Moves the grabbed particle one substep nearer to its target, as far as its neighbours allow, and pulls the particles around it
+    /// along. `left` substeps remain, this one included.
     pub fn move_grabbed(&mut self, topology: &Topology, left: u32, seconds: f32) {
         let Some((held, target)) = self.input.held.in_hand() else {
             return;
@@ -15,7 +15,7 @@ impl Particles {
         let i = held as usize;
         let from = self.state.position.get(i);
         let mut hand = from + (target - from) / left as f32;
-        // Projects onto the balls around the neighbours in turn; two rounds are enough for those of a sheet.
+        // Projects onto the balls around the neighbours in turn; two rounds are enough for the neighbours in a sheet.
         for &neighbor in topology.neighbors(held).iter().cycle().take(16) {
             let rest =
                 topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
@@ -23,7 +23,7 @@ impl Particles {
             hand = anchor + (hand - anchor).clamp_length_max(MOST_STRETCH * rest);
         }
         self.state.position.set(i, hand);
-        // 1 − w of the way is left after a sixtieth of a second, however many substeps that is.
+        // A part 1 − w of the displacement is left after a sixtieth of a second, whatever the number of substeps.
         for pulled in &self.input.pulled {
             let i = pulled.particle as usize;
             if self.input.inv_mass[i] == 0.0 {

@@ -11,11 +11,11 @@ use crate::memory::heap;
 pub struct Held {
     /// In storage order.
     pub particle: u32,
-    /// By what.
+    /// Its holder.
     pub by: HeldBy,
 }
 
-/// What holds a particle.
+/// Holder of a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeldBy {
     /// A pin, at this place in the cloth's frame \[m\].
@@ -28,7 +28,7 @@ pub enum HeldBy {
     Hand(Vec3),
 }
 
-/// What holds particles, in the order of the list.
+/// Kinds of holders, in the order of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HolderKind {
     /// Pins, in the order of the numbers that were given to their particles.
@@ -42,7 +42,7 @@ pub enum HolderKind {
 }
 
 impl HeldBy {
-    /// What kind of holder that is.
+    /// Kind of the holder.
     pub fn kind(self) -> HolderKind {
         match self {
             Self::Pin(_) => HolderKind::Pin,
@@ -58,18 +58,18 @@ impl HeldBy {
 pub struct HeldParticles(Vec<Held>);
 
 impl HeldParticles {
-    /// All.
+    /// All particles of the list.
     pub fn particles(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.0.iter().map(|held| held.particle)
     }
 
-    /// Those that are kinematic wherever they go: all but that in a hand.
+    /// Particles that are kinematic wherever they go: all but the one in a hand.
     pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         let end = self.range(HolderKind::Hand).start;
         self.0[..end].iter().map(|held| held.particle)
     }
 
-    /// Those that holders of this kind hold.
+    /// Particles that holders of this kind hold.
     pub fn of(&self, kind: HolderKind) -> &[Held] {
         &self.0[self.range(kind)]
     }
@@ -84,7 +84,7 @@ impl HeldParticles {
         pins.map(move |held| (held.particle, place(held)))
     }
 
-    /// Whether pins or motion constraints hold any: what keeps its place in the cloth's frame, or near it.
+    /// Returns whether pins or motion constraints hold any: holders that keep a particle at, or near, its place in the cloth's frame.
     pub fn any_in_frame(&self) -> bool {
         let held = |kind| !self.of(kind).is_empty();
         held(HolderKind::Pin) || held(HolderKind::Limit)
@@ -128,7 +128,7 @@ impl HeldParticles {
         }
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Memory on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.0)
     }

@@ -1,4 +1,4 @@
-//! What the attachments of a cloth hold during a step.
+//! Particles held by attachments during a step.
 
 use bevy_math::Vec3;
 
@@ -13,66 +13,65 @@ use crate::{
     topology::order::ParticleOrder,
 };
 
-/// The particles of a cloth that others hold, and where.
+/// Particles of a cloth that attachments hold, and their points.
 #[derive(Clone, Debug, Default)]
 pub struct Holds {
     pub bodies: Vec<Holder>,
-    /// By body and particle, one of each particle.
+    /// Rigid holds by body and particle, one of each particle.
     pub rigid: Vec<Hold>,
     pub springs: Vec<Spring>,
     pub order: ParticleOrder,
-    /// Whether something changed that wakes the cloth.
+    /// True if a change wakes the cloth.
     pub disturbed: bool,
-    /// How far the point goes in this step that goes furthest \[m\].
+    /// Largest displacement of a point in this step \[m\].
     pub furthest: f32,
-    /// Different whenever what is held changed.
+    /// Different whenever the holds changed.
     pub revision: u64,
 }
 
-/// What holds particles, during a step.
+/// Body that holds particles, during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Holder {
-    /// What tells it from others, and what it goes with, as bits.
+    /// Identity of the attachment and of its target, as bits.
     pub attachment: u64,
     pub target: u64,
-    /// At the start of the step.
+    /// Pose at the start of the step.
     pub start: Pose,
-    /// At its end.
+    /// Pose at the end of the step.
     pub end: Pose,
-    /// Where it was put elsewhere from, before it moved on from `start`.
+    /// Pose before a jump that put it to `start`.
     pub jumped: Option<Pose>,
-    /// What of its way in this step is too sudden for the cloth to feel \[m\].
+    /// Part of its displacement in this step that is too sudden for the cloth to feel \[m\].
     pub excess: Vec3,
-    /// Whether it was teleported on request, and is otherwise still in this step: its velocity is not known.
+    /// True if it was teleported on request, and is otherwise still in this step: its velocity is not known.
     pub told: bool,
-    /// What its springs pulled with, summed over the substeps, in world axes \[N\].
+    /// Force of its springs, summed over the substeps, in world axes \[N\].
     pub pulled: Vec3,
-    /// Over how many substeps.
+    /// Number of those substeps.
     pub substeps: u32,
 }
 
 /// A particle at a point of an attachment.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold {
-    /// In storage order.
+    /// Index in storage order.
     pub particle: u32,
-    /// Which of the bodies.
+    /// Index in the list of bodies.
     pub body: u32,
-    /// In the entity's own space \[m\].
+    /// Point in the entity's own space \[m\].
     pub point: Vec3,
-    /// From where the body has the point to where the particle is, at the start and at the end of the step, in the cloth's
-    /// frame \[m\].
+    /// Offset from the point to the particle, at the start and at the end of the step, in the cloth's frame \[m\].
     pub gap: [Vec3; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Spring {
     pub hold: Hold,
-    /// Of this particle alone [m/N].
+    /// Compliance for this particle alone [m/N].
     pub compliance: f32,
-    /// Where its other end is in this substep \[m\].
+    /// Position of its other end in this substep \[m\].
     anchor: Vec3,
-    /// What it was before the spring counted [1/kg].
+    /// Inverse mass of the particle without the spring [1/kg].
     inv_mass: f32,
 }
 
@@ -87,17 +86,17 @@ impl Spring {
     }
 }
 
-/// A cloth that sleeps wakes where what holds it is this far from where it was \[m\].
+/// Displacement of an attachment target by which it wakes a sleeping cloth \[m\].
 const WAKES: f32 = 1e-4;
 
-/// A particle that is not where it is held goes there no faster than this [m/s].
+/// Largest speed at which a particle goes to the point that holds it [m/s].
 const CATCHES_UP: f32 = 30.0;
 
-/// A point that goes no further in a step stands still \[m\].
+/// Largest displacement in a step of a point that counts as still \[m\].
 pub const STANDS: f32 = 1e-5;
 
 impl Holds {
-    /// Whether nothing is attached.
+    /// Returns whether nothing is attached.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
@@ -113,12 +112,12 @@ impl Holds {
         self.revision
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.bodies) + heap(&self.rigid) + heap(&self.springs)
     }
 
-    /// Whether what it hangs on moves on, however slowly.
+    /// Returns whether a body that holds it moves, however slowly.
     pub fn is_led(&self) -> bool {
         self.furthest > STANDS
     }
@@ -127,14 +126,14 @@ impl Holds {
         self.disturbed
     }
 
-    /// Forgets everything.
+    /// Forgets all attachments.
     pub fn clear(&mut self) {
         self.bodies.clear();
         self.rigid.clear();
         self.springs.clear();
     }
 
-    /// Adds an attachment; where it has no compliance, later ones take particles from earlier ones.
+    /// Adds an attachment; without compliance, later ones take particles from earlier ones.
     pub fn add(&mut self, body: Holder, points: &[(u32, Vec3)], compliances: Option<&[f32]>) {
         let hold = |&(particle, point): &(u32, Vec3)| Hold {
             particle,
@@ -153,8 +152,8 @@ impl Holds {
         self.bodies.push(body);
     }
 
-    /// When all are added: makes the rigid ones kinematic, and notes where they start. Returns whether others are held than
-    /// before.
+    /// Completes the list after the last attachment: makes rigidly held particles kinematic, and notes their start. Returns whether other
+    /// particles are held than before.
     pub fn finish(&mut self, frame: &Frame, particles: &mut Particles, seconds: f32) -> bool {
         self.order = particles.order.clone();
         self.rigid
@@ -199,7 +198,7 @@ impl Holds {
         changed
     }
 
-    /// From a body's own space to the cloth's frame, at the end of a substep.
+    /// Map from a body's own space to the cloth's frame, at the end of a substep.
     fn map(&self, body: u32, fraction: f32, frame: &Frame) -> Map {
         let body = &self.bodies[body as usize];
         body.start
@@ -207,7 +206,7 @@ impl Holds {
             .seen_from(frame.isometry())
     }
 
-    /// Moves what is held rigidly to where it is at the end of a substep. The frame is there already.
+    /// Moves rigidly held particles to their points at the end of a substep. The frame is there already.
     pub fn advance(&mut self, substep: &Substep, frame: &Frame, particles: &mut Particles) {
         let fraction = if substep.left() == 1 {
             1.0
@@ -265,8 +264,8 @@ impl Holds {
         }
     }
 
-    /// Measures the springs after the constraints are solved, and gives the particles their masses back. Returns the sum of what
-    /// they pull their bodies with, in the cloth's frame \[N\].
+    /// Measures the springs after the constraints are solved, and restores the inverse masses of the particles. Returns the sum of their
+    /// forces on the bodies, in the cloth's frame \[N\].
     pub fn measure(&mut self, frame: &Frame, particles: &mut Particles) -> Vec3 {
         let mut all = Vec3::ZERO;
         for spring in self.springs.iter().rev() {

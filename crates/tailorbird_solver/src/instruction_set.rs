@@ -1,14 +1,14 @@
-//! Which instructions the kernels use.
+//! Instruction set of the kernels.
 
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 
-/// The instructions that the kernels use. What the machine does not have is replaced by the best that it has below.
+/// Instruction set of the kernels. A set that the machine does not have is replaced by the best that it has below.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum InstructionSet {
+pub enum ClothInstructionSet {
     /// The best of this machine.
     #[default]
     Auto,
@@ -22,8 +22,8 @@ pub enum InstructionSet {
     Avx512,
 }
 
-impl InstructionSet {
-    /// The level of the vector library.
+impl ClothInstructionSet {
+    /// Level of the vector library.
     pub fn level(self) -> Level {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,10 +1,11 @@
-//! What a cloth is and how it moves, as data and functions, without an ECS.
+//! Cloth and its motion, as data and functions, without an ECS.
 //!
-//! This is the inside of `tailorbird_cloth`, whose components and systems are what games use, and what keeps its promises from one
-//! version to the next. Here are
+//! This is the inside of `tailorbird_cloth`. Games use the components and systems of that crate, which keeps its promises from one version
+//! to the next. Here are
 //!
-//! - the rest shape and what is computed from it once: [`shape`], [`topology`];
-//! - a cloth in a step: [`particles`] (state, input, scratch, as arrays of [`points`] and [`numbers`]), [`frame`], what holds it, colliders, wind;
+//! - the rest shape and the topology computed from it once: [`shape`], [`topology`];
+//! - a cloth in a step: [`particles`] (state, input, scratch, as arrays of [`points`] and [`numbers`]), [`frame`], holders, colliders,
+//!   wind;
 //! - `step`: the loop over substeps, and the table of their stages;
 //! - the arithmetic, one file for each equation, explained in `kernels/README.md`.
 //!
@@ -23,6 +24,8 @@ pub mod contact;
 #[doc(hidden)]
 pub mod effort;
 pub mod error;
+#[doc(hidden)]
+pub mod fingerprint;
 pub mod frame;
 #[doc(hidden)]
 pub mod grant;
@@ -65,5 +68,5 @@ pub mod wind;
 #[doc(hidden)]
 pub mod workers;
 
-/// Whether this crate was built without optimisation: its kernels are some 200 times as slow as they need be.
+/// True if this crate was built without optimisation: its kernels are then some 200 times slower.
 pub const UNOPTIMISED: bool = cfg!(unoptimised);

@@ -1,4 +1,4 @@
-//! How far particles may get from their targets.
+//! Motion limits: bounds of the distance of particles from their targets.
 
 use crate::{
     held::HolderKind,
@@ -12,23 +12,23 @@ use crate::{
     substep::Substep,
 };
 
-/// How far particles may get from their targets during a step, in storage order.
+/// Bounds of the distance of particles from their targets during a step, in storage order.
 #[derive(Clone, Debug, Default)]
 pub struct MotionLimits {
-    /// Furthest from the target \[m\]; empty where nothing is constrained.
+    /// Largest distance from the target \[m\]; empty where nothing is constrained.
     pub max_distance: Numbers,
-    /// Empty where there is no backstop \[m\].
+    /// Distance from the target to the backstop \[m\]; empty without backstops.
     pub backstop_distance: Numbers,
-    /// \[m\]
+    /// Radius of the backstop \[m\].
     pub backstop_radius: Numbers,
-    /// At the start and at the end of the step, in the cloth's frame \[m\].
+    /// Targets at the start and at the end of the step, in the cloth's frame \[m\].
     pub targets: [Points; 2],
     /// Unit normals at the targets.
     pub normals: [Points; 2],
 }
 
 impl MotionLimits {
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let points = self.targets.iter().chain(&self.normals);
         let numbers = [
@@ -40,7 +40,7 @@ impl MotionLimits {
             + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
     }
 
-    /// Moves what is held at its target on by one substep.
+    /// Moves particles that are held at their targets on by one substep.
     pub fn advance(&self, substep: &Substep, particles: &mut Particles) {
         let Particles {
             state: State { position, .. },

@@ -1,6 +1,6 @@
-//! How much memory things take.
+//! Memory use.
 
-/// What a list takes on the heap \[byte\].
+/// Heap memory of a list \[byte\].
 pub fn heap<T>(list: &Vec<T>) -> usize {
     list.capacity() * size_of::<T>()
 }

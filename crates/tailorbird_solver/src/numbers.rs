@@ -1,25 +1,25 @@
-//! Numbers that start where a cache line does.
+//! Numbers aligned to cache lines.
 
 use std::{
     ops::{Deref, DerefMut},
     sync::atomic::{AtomicUsize, Ordering::Relaxed},
 };
 
-/// Numbers in a cache line.
+/// Count of numbers in a cache line.
 const LINE: usize = 16;
 
-/// Arrays of fewer numbers than this start at the next cache line, longer ones further on.
+/// Length from which on an array starts further on than at the next cache line.
 const LONG: usize = 4096;
 
-/// By how many cache lines long arrays start further on than the one before, and how many places there are. The kernels go
-/// through up to ten arrays at once, which would all be in the same lines of a page if each started with one.
+/// Offset between the starts of successive long arrays, in cache lines, and the count of different starts. The kernels go through up to ten
+/// arrays at once, which would all be in the same lines of a page if each started with one.
 const APART: usize = 5;
 const PLACES: usize = 16;
 
-/// Numbers that start where a cache line does: a vector that lies in two lines takes twice as long. Otherwise as a [`Vec`].
+/// Numbers aligned to cache lines: loading a vector that lies in two lines takes twice as long. Otherwise like a [`Vec`].
 #[derive(Debug, Default)]
 pub struct Numbers {
-    /// Some that are not used, then the numbers.
+    /// Unused numbers up to `start`, then the numbers.
     list: Vec<f32>,
     start: usize,
 }
@@ -58,7 +58,7 @@ impl Numbers {
         self.list.truncate(self.start);
     }
 
-    /// Makes it `len` numbers, with `value` for new ones.
+    /// Resizes to `len` numbers, with `value` for new ones.
     pub fn resize(&mut self, len: usize, value: f32) {
         if self.start + len > self.list.capacity() {
             let mut longer = Self::with_capacity(len);
@@ -80,7 +80,7 @@ impl Numbers {
         &mut self.list[self.start + i]
     }
 
-    /// What they take on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         crate::memory::heap(&self.list)
     }
@@ -154,7 +154,7 @@ impl<'a> IntoIterator for &'a mut Numbers {
     }
 }
 
-/// A number from −1 to 1 that looks random, always the same for the same key.
+/// Number from −1 to 1 that looks random, always the same for the same key.
 pub fn unit_of(key: u32) -> f32 {
     let mut z = key.wrapping_add(0x9e37_79b9);
     z = (z ^ (z >> 16)).wrapping_mul(0x21f0_aaad);

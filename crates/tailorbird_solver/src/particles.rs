@@ -1,4 +1,4 @@
-//! The particles of one cloth: what they are, what moves them, what is computed on the way.
+//! The particles of one cloth: their state, the input of a step, and scratch.
 
 use bevy_math::Vec3;
 
@@ -15,7 +15,7 @@ use crate::{
     memory::heap,
     numbers::Numbers,
     points::Points,
-    topology::{Topology, order::ParticleOrder},
+    topology::{Topology, copies::ParticleCopy, order::ParticleOrder},
 };
 
 /// The particles of one cloth, as parallel arrays in storage order, in the cloth's frame.
@@ -24,58 +24,58 @@ pub struct Particles {
     /// The order in which all that follows is stored.
     #[doc(hidden)]
     pub order: ParticleOrder,
-    /// What the next step depends on.
+    /// State that the next step depends on.
     #[doc(hidden)]
     pub state: State,
-    /// What a step is told.
+    /// Input of a step.
     #[doc(hidden)]
     pub input: Input,
-    /// What is computed on the way.
+    /// Intermediate results.
     #[doc(hidden)]
     pub scratch: Scratch,
 }
 
-/// What the next step of the particles depends on.
+/// State of the particles that the next step depends on.
 #[derive(Clone, Debug, Default)]
 pub struct State {
     /// Position \[m\].
     pub position: Points,
     /// Position at the start of the substep \[m\]; with `position` and `substep_seconds` it gives the velocity.
     pub previous_position: Points,
-    /// What rounding took from the displacement of the substep \[m\]; part of the velocity.
+    /// Rounding error of the displacement of the substep \[m\]; part of the velocity.
     pub lost_displacement: Points,
     /// Position at the start of the step \[m\], to interpolate from, and to fall back to.
     pub step_position: Points,
     /// The time that `position` − `previous_position` took \[s\].
     pub substep_seconds: f32,
-    /// How it stands with what the cloth is asked for.
+    /// Strain beyond what the fabric allows, and its history.
     pub effort: Effort,
-    /// How much longer than at rest the threads of a strained cloth may be.
+    /// Additional length that the threads of a strained cloth are granted.
     pub grant: Grant,
-    /// Mean places of runs of particles in the last while \[m\].
+    /// Mean positions of blocks of 16 particles over the last quarter of a second \[m\].
     pub calm: Vec<Vec3>,
     /// The point that stayed where it was when the scale changed last \[m\].
     pub grown_about: Vec3,
-    /// What particles see of meshes: also on which side of an open one each is.
+    /// Contact planes of meshes, which hold the side of an open mesh that each particle is on.
     pub planes: Vec<MeshPlanes>,
-    /// Colliders that go through the cloth, as they tore it along faster than it can follow.
+    /// Colliders that pass through the cloth, because they move faster than it can follow.
     pub passing: Vec<ColliderId>,
     /// The particles that carry parts of bodies; those of each collider side by side.
     pub couplings: Vec<Coupling>,
     /// The largest force on bodies that the cloth carries, in the last while \[N\].
     pub load: f32,
-    /// What it touched in the last substep.
+    /// Contact in the last substep.
     pub touch: Touch,
 }
 
-/// What a step is told of the particles.
+/// Input of a step, as far as it concerns particles.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     /// Acceleration by wind and forces during this step [m/s²]; empty where there is none.
     pub acceleration: Points,
     /// Mass, pinned or not \[kg\].
     pub mass: Vec<f32>,
-    /// What the masses were made of [kg/m²].
+    /// Mass per area that the masses were computed with [kg/m²].
     pub areal_density: f32,
     /// 1/mass [1/kg]; 0 is kinematic.
     pub inv_mass: Numbers,
@@ -85,14 +85,14 @@ pub struct Input {
     pub pulled: Vec<Pulled>,
 }
 
-/// What is computed on the way.
+/// Intermediate results; can be dropped before any step.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     /// `previous_position` moved along with air that differs from place to place \[m\].
     pub previous_with_air: Points,
     /// Contacts in this substep, noted before the constraints are solved.
     pub contacts: Contacts,
-    /// What is known of the colliders around.
+    /// Colliders near the cloth.
     pub cache: ContactCache,
     /// Numbers of a stage: multipliers of the classic solver, rows at seams, lengths.
     pub lambda: Vec<f32>,
@@ -139,12 +139,46 @@ impl Particles {
         }
     }
 
+    /// Adds particles that are split off others: they are where those are and as fast, free, and take their part of the mass. The next
+    /// step needs a topology [with the same copies](Topology::with_copies).
+    ///
+    /// # Panics
+    /// When one is a copy of a particle that does not exist.
+    pub fn append(&mut self, copies: &[ParticleCopy]) {
+        for copy in copies {
+            let (of, len) = (copy.of as usize, self.len());
+            let State {
+                position,
+                previous_position,
+                lost_displacement,
+                step_position,
+                ..
+            } = &mut self.state;
+            for points in [
+                position,
+                previous_position,
+                lost_displacement,
+                step_position,
+            ] {
+                let place = points.get(of);
+                points.resize(len + 1, 0.0);
+                points.set(len, place);
+            }
+            let mass = copy.part * self.input.mass[of];
+            self.input.mass[of] -= mass;
+            self.input.mass.push(mass);
+            self.input.inv_mass.resize(len + 1, 0.0);
+        }
+        self.input.acceleration.clear();
+        self.update_inv_masses();
+    }
+
     /// The number of particles.
     pub fn len(&self) -> usize {
         self.state.position.len()
     }
 
-    /// What the state takes on the heap \[byte\].
+    /// Memory on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let points = [
             &self.state.position,
@@ -175,12 +209,12 @@ impl Particles {
             + self.state.grant.memory_bytes()
     }
 
-    /// Whether there are none: the cloth is not built yet, or its shape is invalid.
+    /// Returns whether there are none: the cloth is not built yet, or its shape is invalid.
     pub fn is_empty(&self) -> bool {
         self.state.position.is_empty()
     }
 
-    /// Where a particle is, in the cloth's frame \[m\].
+    /// Position of a particle in the cloth's frame \[m\].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -188,12 +222,12 @@ impl Particles {
         self.state.position.get(self.stored(i))
     }
 
-    /// Where all particles are, in the cloth's frame \[m\].
+    /// Positions of all particles in the cloth's frame \[m\].
     pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
         (0..self.len()).map(|i| self.position(i))
     }
 
-    /// How the particles are numbered where they are stored.
+    /// Permutation between the original order and the storage order.
     pub fn order(&self) -> &ParticleOrder {
         &self.order
     }
@@ -212,7 +246,7 @@ impl Particles {
         &self.state.step_position
     }
 
-    /// Where a particle is between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
+    /// Position of a particle between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
     /// frame \[m\]. `i` is in storage order, as in
     /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex()).
     ///
@@ -225,7 +259,7 @@ impl Particles {
         from * (1.0 - fraction) + to * fraction
     }
 
-    /// How fast a particle moves through the world, in the axes of the cloth's frame [m/s].
+    /// Velocity of a particle relative to the world, in the axes of the cloth's frame [m/s].
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -251,14 +285,14 @@ impl Particles {
         self.input.mass[self.stored(i)]
     }
 
-    /// Whether a particle is held by a pin.
+    /// Returns whether a particle is held by a pin.
     pub fn is_pinned(&self, i: usize) -> bool {
         let pins = self.input.held.of(HolderKind::Pin);
         pins.binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
             .is_ok()
     }
 
-    /// Whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
+    /// Returns whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
     pub fn is_held(&self, i: usize) -> bool {
         let stored = self.order.stored(i as u32);
         self.anchors().any(|anchor| anchor == stored)
@@ -285,7 +319,7 @@ impl Particles {
         self.update_inv_masses();
     }
 
-    /// Computes inverse masses from masses and what is held.
+    /// Computes inverse masses from masses and from the list of held particles.
     pub fn update_inv_masses(&mut self) {
         for (inv_mass, mass) in self.input.inv_mass.iter_mut().zip(&self.input.mass) {
             // A vertex that no triangle uses has no mass and stays where it is.
@@ -299,7 +333,7 @@ impl Particles {
         }
     }
 
-    /// Replaces the particles that holders of a kind hold. Returns whether they are others; then inverse masses follow.
+    /// Replaces the particles that holders of a kind hold. Returns whether others are held than before; then updates inverse masses.
     pub fn hold(&mut self, kind: HolderKind, held: impl IntoIterator<Item = Held>) -> bool {
         let changed = self.input.held.replace(kind, held);
         if changed {
@@ -308,7 +342,7 @@ impl Particles {
         changed
     }
 
-    /// Particles that are kinematic wherever they go, in storage order: what the others are tethered to.
+    /// Particles that are kinematic wherever they go, in storage order: the others are tethered to them.
     pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.input.held.anchors()
     }
@@ -335,14 +369,14 @@ impl Particles {
         }
     }
 
-    /// Notes where the step starts.
+    /// Notes the positions at the start of the step.
     pub fn begin_step(&mut self) {
         self.state.step_position.copy_from(&self.state.position);
         self.state.touch.overlaps = false;
         self.scratch.cache.begin_step();
     }
 
-    /// Puts the particles back to where the step started, without velocity.
+    /// Puts the particles back to their positions at the start of the step, without velocity.
     pub fn reset_to_step_start(&mut self) {
         self.state.position.copy_from(&self.state.step_position);
         self.state
@@ -353,7 +387,7 @@ impl Particles {
         self.state.grant.clear();
     }
 
-    /// Puts the particles where they are at rest, pinned ones where they are held, without velocity.
+    /// Puts the particles to their rest positions, pinned ones to their pins, without velocity.
     pub fn reset_to_rest(&mut self, topology: &Topology) {
         if self.len() != topology.particles() {
             return;

@@ -25,7 +25,7 @@ impl Points {
         }
     }
 
-    /// What they take on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.x.memory_bytes() + self.y.memory_bytes() + self.z.memory_bytes()
     }
@@ -36,14 +36,21 @@ impl Points {
         self.x.len()
     }
 
-    /// Whether there are as many as this of each coordinate.
+    /// Returns whether there are `len` of each coordinate.
     pub fn is_of(&self, len: usize) -> bool {
         [&self.x, &self.y, &self.z]
             .into_iter()
             .all(|values| values.len() == len)
     }
 
-    /// Whether there are none.
+    /// Returns whether there are at least `len` of each coordinate.
+    pub fn has(&self, len: usize) -> bool {
+        [&self.x, &self.y, &self.z]
+            .into_iter()
+            .all(|values| values.len() >= len)
+    }
+
+    /// Returns whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
@@ -97,7 +104,7 @@ impl Points {
         self.each(Numbers::clear);
     }
 
-    /// Makes it `len` points, with `value` as the coordinates of new ones.
+    /// Resizes to `len` points, with `value` as the coordinates of new ones.
     pub fn resize(&mut self, len: usize, value: f32) {
         self.each(|values| values.resize(len, value));
     }

@@ -1,8 +1,8 @@
-//! Where an entity is, with its scale and shear.
+//! Pose of an entity, with its scale and shear.
 
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 
-/// Where an entity is in the world: its rigid place, and what its own space is stretched by within that.
+/// Pose of an entity in the world: its rigid place, and the stretch of its own space within that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Translation \[m\] and rotation.
@@ -19,19 +19,19 @@ pub struct Map {
 }
 
 impl Map {
-    /// A point there \[m\].
+    /// Image of a point \[m\].
     pub fn apply(&self, point: Vec3) -> Vec3 {
         self.matrix * point + self.shift
     }
 
-    /// The point that gets there \[m\].
+    /// The point whose image this is \[m\].
     pub fn undo(&self, point: Vec3) -> Vec3 {
         self.matrix.inverse() * (point - self.shift)
     }
 }
 
 impl Pose {
-    /// A pose at a rigid place, with what its own space is stretched by within that.
+    /// Pose at a rigid place, with the stretch of its own space within that.
     pub fn new(place: Isometry3d, stretch: Mat3) -> Self {
         Self { place, stretch }
     }
@@ -41,12 +41,12 @@ impl Pose {
         self.place
     }
 
-    /// The same elsewhere.
+    /// The same pose at another place.
     pub fn at(&self, place: Isometry3d) -> Self {
         Self { place, ..*self }
     }
 
-    /// A part of the way to another, 0 to 1: the place moves along a straight line, and turns evenly.
+    /// Pose at a fraction of the motion to another, 0 to 1: the place moves along a straight line, and turns evenly.
     pub fn towards(&self, to: &Self, fraction: f32) -> Self {
         if self == to || fraction >= 1.0 {
             return *to;
@@ -60,7 +60,7 @@ impl Pose {
         }
     }
 
-    /// From the entity's own space to a frame's.
+    /// Map from the entity's own space to a frame's.
     pub fn seen_from(&self, frame: Isometry3d) -> Map {
         let unturned = frame.rotation.inverse();
         // The difference of the translations first: it is small even where they are large.
@@ -69,17 +69,17 @@ impl Pose {
         Map { matrix, shift }
     }
 
-    /// How far it is to another \[m\].
-    pub fn way_to(&self, to: &Self) -> Vec3 {
+    /// Displacement to another pose \[m\].
+    pub fn displacement_to(&self, to: &Self) -> Vec3 {
         Vec3::from(to.place.translation - self.place.translation)
     }
 
-    /// How much another is turned.
+    /// Rotation to another pose.
     pub fn turn_to(&self, to: &Self) -> Quat {
         to.place.rotation * self.place.rotation.inverse()
     }
 
-    /// Whether another pose is larger by about as much as a cloth that grows by this.
+    /// Returns whether another pose is larger by about the ratio by which a cloth grows.
     pub fn grows_to(&self, to: &Self, ratio: Vec3) -> bool {
         let growth = to.stretch.determinant() / self.stretch.determinant();
         let (is, should) = (growth.abs().ln(), ratio.element_product().abs().ln());
@@ -87,7 +87,7 @@ impl Pose {
     }
 }
 
-/// The rigid motion from one pose to another, as seen from a frame that does not move.
+/// Rigid motion from one pose to another, as seen from a frame that does not move.
 pub fn motion(from: &Pose, to: &Pose, frame: Isometry3d) -> Isometry3d {
     let unturned = frame.rotation.inverse();
     // As small numbers: both ends relative to the frame.

@@ -42,7 +42,7 @@ macro_rules! for_all {
 
 pub(crate) use for_all as proptest;
 
-/// What a test is tried with.
+/// Values that a test is tried with.
 struct Case {
     names: &'static str,
     values: Box<dyn Values>,

@@ -1,10 +1,10 @@
-//! With which force a cloth pulls at what holds it.
+//! Force of a cloth on its holders.
 
 use bevy_math::{DVec3, Vec3};
 
 use crate::{frame::Frame, particles::Particles, substep::Substep};
 
-/// With which force a cloth pulls at everything that holds it rigidly.
+/// Force of a cloth on everything that holds it rigidly.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PinForces {
     sum: Vec3,
@@ -14,12 +14,12 @@ pub struct PinForces {
 }
 
 impl PinForces {
-    /// The sum over all that is held, mean over the last step, in world axes \[N\].
+    /// Sum over all held particles, mean over the last step, in world axes \[N\].
     pub fn force(&self) -> Vec3 {
         self.sum / self.substeps.max(1) as f32
     }
 
-    /// Before the constraints are solved.
+    /// Notes Σ m x before the constraints are solved.
     pub fn begin(&mut self, substep: &Substep, particles: &Particles) {
         if substep.index == 0 {
             *self = Self::default();
@@ -27,7 +27,7 @@ impl PinForces {
         self.before = first_moment(particles);
     }
 
-    /// After the constraints were solved. `springs` is what the springs of attachments were pulled with, in the cloth's frame
+    /// Adds up the force after the constraints were solved. `springs` is the force on the springs of attachments, in the cloth's frame
     /// \[N\].
     pub fn end(&mut self, substep: &Substep, frame: &Frame, particles: &Particles, springs: Vec3) {
         let moved = first_moment(particles) - self.before;
@@ -56,7 +56,7 @@ fn first_moment(particles: &Particles) -> DVec3 {
     sum
 }
 
-/// \[kg\].
+/// Mass of the held particles \[kg\].
 fn held_mass(particles: &Particles) -> f32 {
     let masses = particles.input.mass.iter().zip(&particles.input.inv_mass);
     masses.filter(|(_, w)| **w == 0.0).map(|(m, _)| m).sum()

@@ -5,7 +5,7 @@ use std::{collections::hash_map::DefaultHasher, hash::Hasher};
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_reflect::prelude::*;
 
-use crate::{error::ShapeError, topology::repair::Repaired};
+use crate::{error::ClothShapeError, topology::repair::Repaired};
 
 /// The rest shape of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
@@ -20,8 +20,8 @@ pub enum ClothShape {
         size: Vec2,
         /// Columns and rows of particles, at least 2 × 2.
         resolution: UVec2,
-        /// Which point of the rectangle lies at the entity's origin, as fractions of the width from the left and of
-        /// the height from the top. (0, 0), the default, is the top left corner: particle (0, 0).
+        /// Point of the rectangle that lies at the entity's origin, as fractions of the width from the left and of the height from the top.
+        /// (0, 0), the default, is the top left corner: particle (0, 0).
         #[cfg_attr(feature = "serialize", serde(default))]
         origin: Vec2,
     },
@@ -31,21 +31,24 @@ pub enum ClothShape {
         positions: Vec<Vec3>,
         /// Three for each triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
-        /// Vertices that are no further apart than this \[m\] become one particle, so that seams of UVs or normals
-        /// hold together.
+        /// Texture coordinates of the vertices, or none. The warp runs where u is constant, as in the pattern of a garment; without, and in
+        /// triangles where they are not finite, along the edges.
+        #[cfg_attr(feature = "serialize", serde(default))]
+        uvs: Vec<Vec2>,
+        /// Distance \[m\] up to which vertices become one particle, so that seams of UVs or normals hold together.
         #[cfg_attr(feature = "serialize", serde(default = "weld_distance"))]
         weld_distance: f32,
     },
 }
 
-/// Of a file that does not say.
+/// Default for a file without the field.
 #[cfg(feature = "serialize")]
 fn weld_distance() -> f32 {
     ClothShape::WELD_DISTANCE
 }
 
 impl ClothShape {
-    /// The distance \[m\] at which the vertices of a mesh are welded, unless another is given.
+    /// Distance \[m\] at which the vertices of a mesh are welded, unless another is set.
     pub const WELD_DISTANCE: f32 = 1e-5;
 
     /// A rectangle of `size` \[m\] with `resolution` columns and rows of particles, whose top left corner is at the origin.
@@ -57,11 +60,12 @@ impl ClothShape {
         }
     }
 
-    /// Triangles, given as vertices \[m\] and three indices for each triangle.
+    /// Triangles, by their vertices \[m\] and three indices for each triangle.
     pub fn mesh(positions: impl Into<Vec<Vec3>>, indices: impl Into<Vec<u32>>) -> Self {
         Self::Mesh {
             positions: positions.into(),
             indices: indices.into(),
+            uvs: Vec::new(),
             weld_distance: Self::WELD_DISTANCE,
         }
     }
@@ -69,9 +73,9 @@ impl ClothShape {
     /// Checks the shape without building it.
     ///
     /// # Errors
-    /// The first thing that is wrong with it.
-    pub fn check(&self) -> Result<(), ShapeError> {
-        /// The most particles of a grid: as many as f32 counts exactly.
+    /// The first error that is found.
+    pub fn check(&self) -> Result<(), ClothShapeError> {
+        /// Largest number of particles of a grid: f32 counts up to it exactly.
         const MOST_PARTICLES: u64 = 1 << 24;
         match self {
             Self::Grid {
@@ -80,30 +84,37 @@ impl ClothShape {
                 origin,
             } => {
                 if !size.is_finite() || size.min_element() <= 0.0 {
-                    return Err(ShapeError::Size { value: *size });
+                    return Err(ClothShapeError::Size { value: *size });
                 }
                 let particles = u64::from(resolution.x) * u64::from(resolution.y);
                 if resolution.cmplt(UVec2::splat(2)).any() || particles > MOST_PARTICLES {
-                    return Err(ShapeError::Resolution { value: *resolution });
+                    return Err(ClothShapeError::Resolution { value: *resolution });
                 }
                 if !origin.is_finite() {
-                    return Err(ShapeError::Origin { value: *origin });
+                    return Err(ClothShapeError::Origin { value: *origin });
                 }
                 Ok(())
             }
             Self::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
+                if !uvs.is_empty() && uvs.len() != positions.len() {
+                    return Err(ClothShapeError::UvCount {
+                        value: uvs.len(),
+                        vertices: positions.len(),
+                    });
+                }
                 if !(*weld_distance >= 0.0 && weld_distance.is_finite()) {
-                    return Err(ShapeError::WeldDistance {
+                    return Err(ClothShapeError::WeldDistance {
                         value: *weld_distance,
                     });
                 }
                 check_positions(positions.iter().copied())?;
                 if indices.len() % 3 != 0 {
-                    return Err(ShapeError::IndexCount {
+                    return Err(ClothShapeError::IndexCount {
                         value: indices.len(),
                     });
                 }
@@ -113,14 +124,14 @@ impl ClothShape {
                     .enumerate()
                     .find(|(_, i)| **i as usize >= vertices)
                 {
-                    return Err(ShapeError::IndexOutOfRange {
+                    return Err(ClothShapeError::IndexOutOfRange {
                         at,
                         value: *value,
                         vertices,
                     });
                 }
                 if indices.is_empty() {
-                    return Err(ShapeError::NoTriangles {
+                    return Err(ClothShapeError::NoTriangles {
                         vertices,
                         triangles: 0,
                     });
@@ -130,7 +141,7 @@ impl ClothShape {
         }
     }
 
-    /// Positions of the particles at rest \[m\], by their given numbers; none where the shape is wrong.
+    /// Positions of the particles at rest \[m\], in their original order; none where the shape is wrong.
     pub fn rest_positions(&self) -> Vec<Vec3> {
         if self.check().is_err() {
             return Vec::new();
@@ -157,6 +168,7 @@ impl ClothShape {
                 positions,
                 indices,
                 weld_distance,
+                ..
             } => Repaired::new(positions, indices, *weld_distance, Vec3::ONE).positions,
         }
     }
@@ -177,8 +189,8 @@ impl ClothShape {
         }
     }
 
-    /// 128 bits that stand for all bits of a shape and its scale: two that differ do not meet in practice, so that none has to be
-    /// kept to compare with.
+    /// Hash of a shape and its scale, of 128 bits: two that differ do not meet in practice, so that no shape has to be kept to compare
+    /// with.
     pub fn fingerprint(&self, scale: Vec3) -> u128 {
         let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
         halves[1].write_u8(1);
@@ -201,6 +213,7 @@ impl ClothShape {
             Self::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
                 [1, weld_distance.to_bits(), positions.len() as u32]
@@ -208,7 +221,9 @@ impl ClothShape {
                     .for_each(&mut write);
                 let coordinates = positions.iter().flat_map(Vec3::to_array);
                 coordinates.map(f32::to_bits).for_each(&mut write);
-                indices.iter().copied().for_each(write);
+                indices.iter().copied().for_each(&mut write);
+                let uvs = uvs.iter().flat_map(Vec2::to_array).map(f32::to_bits);
+                uvs.for_each(write);
             }
         }
         let [low, high] = halves.map(|half| u128::from(half.finish()));
@@ -216,16 +231,18 @@ impl ClothShape {
     }
 }
 
-/// What is wrong with the vertices of a mesh.
-pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), ShapeError> {
-    /// The farthest from the origin \[m\] in any direction: f32 counts in steps of 6 cm there.
+/// Checks the vertices of a mesh.
+pub(crate) fn check_positions(
+    positions: impl Iterator<Item = Vec3>,
+) -> Result<(), ClothShapeError> {
+    /// Largest coordinate \[m\]: f32 counts in steps of 6 cm there.
     const FARTHEST: f32 = 1e6;
     for (vertex, value) in positions.enumerate() {
         if !value.is_finite() {
-            return Err(ShapeError::NonFinitePosition { vertex, value });
+            return Err(ClothShapeError::NonFinitePosition { vertex, value });
         }
         if value.abs().max_element() > FARTHEST {
-            return Err(ShapeError::PositionTooFar { vertex, value });
+            return Err(ClothShapeError::PositionTooFar { vertex, value });
         }
     }
     Ok(())

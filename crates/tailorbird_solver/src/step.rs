@@ -1,30 +1,31 @@
 //! A step: a loop over substeps, and the table of the stages of each.
 
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
+use fearless_simd::Level;
 
 use crate::{
     cloth::Cloth,
     contact::colliders::Colliders,
     frame::{Frame, Taken},
-    kernels::rigid,
+    kernels::{range::are_finite, rigid},
     particles::{Input, Particles, State},
     solve,
     substep::Substep,
 };
 
-/// A stage of a substep: what it does to a cloth.
+/// A stage of a substep: a change of a cloth.
 pub type Stage = fn(&Substep, &Colliders, &mut Cloth);
 
 /// The stages of a substep, in their order.
 pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, CALM];
 
-/// Moves the frame, and with it what is held by others.
+/// Moves the frame, and with it the particles that others hold.
 pub const ADVANCE: Stage = |substep, _, cloth| advance(substep, cloth);
 
 /// Moves particles by inertia, gravity, wind and forces.
 pub const INTEGRATE: Stage = |substep, _, cloth| solve::integrate(substep, cloth);
 
-/// Pushes particles out of colliders, and notes what they touch.
+/// Pushes particles out of colliders, and notes contacts.
 pub const APPROACH: Stage = |substep, colliders, cloth| colliders.approach(substep, cloth);
 
 /// Holds the constraints.
@@ -33,20 +34,59 @@ pub const SOLVE: Stage = |substep, _, cloth| solve::solve(substep, cloth);
 /// Keeps particles out of colliders, with friction.
 pub const COLLIDE: Stage = |substep, colliders, cloth| colliders.collide_all(substep, cloth);
 
-/// Damps what is tangled, at the end of the last substep, and looks at what the cloth is asked for.
+/// Damps tangles at the end of the last substep, and measures strain.
 pub const CALM: Stage = |substep, _, cloth| solve::calm(substep, cloth);
 
-/// Takes a cloth through all substeps of a step; `nth` tells what the substep of this index is told.
+/// Takes a group of cloths through all substeps of a step, side by side: all are in the same stage of the same substep. `nth` gives the
+/// parameters of the substep of an index. A cloth that meets no other is a group of one.
 pub fn step<'a>(
     count: u32,
     nth: impl Fn(u32) -> Substep<'a>,
     colliders: &Colliders,
-    cloth: &mut Cloth,
+    group: &mut [Cloth],
 ) {
     for index in 0..count {
         let substep = nth(index);
         for stage in STAGES {
-            stage(&substep, colliders, cloth);
+            for cloth in &mut *group {
+                stage(&substep, colliders, cloth);
+            }
+        }
+    }
+}
+
+/// Result of a step for a cloth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// The part of the edges that is longer than the fabric lets them be, because more is asked of it than it has [-].
+    pub strained: f32,
+    /// The part of the edges that is longer than the fabric lets them be [-].
+    pub stretched: f32,
+    /// The first particle, in storage order, whose position or velocity is not finite.
+    pub non_finite: Option<u32>,
+}
+
+impl Report {
+    /// The report of the particles of a cloth, after a step.
+    pub fn of(level: Level, particles: &Particles) -> Self {
+        let State {
+            position,
+            previous_position,
+            effort,
+            ..
+        } = &particles.state;
+        let all = [position, previous_position];
+        let finite = all.iter().all(|points| are_finite(level, points));
+        let is_wrong = |i: &usize| !all.iter().all(|points| points.get(*i).is_finite());
+        let wrong = || (0..particles.len()).find(is_wrong);
+        Self {
+            strained: effort.unmet(),
+            stretched: effort.stretched(),
+            non_finite: if finite {
+                None
+            } else {
+                wrong().map(|i| i as u32)
+            },
         }
     }
 }
@@ -118,3 +158,6 @@ fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles
         rigid::fling(turned, inv_mass, position);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,23 +1,23 @@
-//! Whether particles are at rest, and how they come to it.
+//! Rest of particles: its detection, and how they are slowed to it.
 
 use bevy_math::Vec3;
 
 use crate::particles::Particles;
 
-/// How many particles that lie side by side are looked at together.
+/// Number of particles side by side in a block.
 const RUN: usize = 16;
 
-/// Time that places are averaged over \[s\].
+/// Time over which positions are averaged \[s\].
 const MEAN: f32 = 0.25;
 
-/// How many times as fast as the whole a run may be at rest.
+/// Largest ratio of a block's motion to that of the whole at rest.
 const FASTEST: f32 = 5.0;
 
 impl Particles {
-    /// Whether runs of particles are as near to their mean place of the last while as if they went at `speed` [m/s], root of the mean
-    /// square, and none five times as far. To be asked once in each step.
+    /// Returns whether the cloth is at rest: the mean positions of blocks of 16 particles differ from their averages over the last 0.25 s
+    /// by no more than `speed` [m/s] · 0.25 s (root mean square), and none by more than five times that. To be called once in each step.
     ///
-    /// A crease that trembles stays where it is, however fast; what swings does not.
+    /// A crease that trembles stays where it is, however fast; a swinging cloth does not.
     pub fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
         let runs = self.len().div_ceil(RUN);
         let known = self.state.calm.len() == runs;
@@ -38,11 +38,11 @@ impl Particles {
             sum += away;
             most = most.max(away);
         }
-        let near = (speed * MEAN).powi(2);
-        known && sum <= near * runs as f32 && most <= FASTEST * FASTEST * near
+        let limit = (speed * MEAN).powi(2);
+        known && sum <= limit * runs as f32 && most <= FASTEST * FASTEST * limit
     }
 
-    /// Takes all but a part of what it moved in this step away, and of its velocity.
+    /// Removes all but a part of the displacement in this step, and of the velocity.
     pub fn slow_down(&mut self, kept: f32) {
         if kept == 1.0 {
             return;
@@ -59,9 +59,9 @@ impl Particles {
                 if *w == 0.0 {
                     continue;
                 }
-                let way = *now - *previous;
+                let displacement = *now - *previous;
                 *now = *start + kept * (*now - *start);
-                *previous = *now - kept * way;
+                *previous = *now - kept * displacement;
                 *lost = 0.0;
             }
         };
@@ -72,7 +72,7 @@ impl Particles {
         axis(&mut p.z, &mut q.z, &s.z, &mut l.z);
     }
 
-    /// Takes all velocity away, also for interpolation.
+    /// Removes all velocity, also for interpolation.
     pub fn stop(&mut self) {
         self.state.step_position.copy_from(&self.state.position);
         self.state.previous_position.copy_from(&self.state.position);

@@ -1,38 +1,38 @@
-//! What a substep is told.
+//! Parameters of a substep.
 
 use bevy_math::Vec3;
 use fearless_simd::Level;
 
 use crate::workers::Workers;
 
-/// A substep of one cloth: what its stages are told.
+/// A substep of one cloth: the parameters of its stages.
 #[derive(Clone, Copy)]
 pub struct Substep<'a> {
     /// The instruction set that the kernels use.
     pub level: Level,
-    /// Its length \[s\].
+    /// Length of the substep \[s\].
     pub seconds: f32,
-    /// Which it is, from 0.
+    /// Index of the substep, from 0.
     pub index: u32,
-    /// How many there are.
+    /// Number of substeps in the step.
     pub count: u32,
     /// Passes over the constraints.
     pub iterations: u32,
     /// Acceleration of every particle [m/s²], in world axes.
     pub gravity: Vec3,
-    /// How fast what is inside a collider is pushed out of it [m/s].
+    /// Speed at which particles inside a collider are pushed out of it [m/s].
     pub overlap_speed: f32,
-    /// Who works on it.
+    /// Threads that work on it.
     pub workers: Workers<'a>,
 }
 
 impl Substep<'_> {
-    /// How far what is inside a collider is pushed out of it, each of the two times in a substep \[m\].
+    /// Distance by which particles inside a collider are pushed out of it, each of the two times in a substep \[m\].
     pub fn out(&self) -> f32 {
         0.5 * self.overlap_speed * self.seconds
     }
 
-    /// How many are left, this one included.
+    /// Number of substeps left, this one included.
     pub fn left(&self) -> u32 {
         self.count - self.index
     }

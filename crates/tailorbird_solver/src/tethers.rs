@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// How far each particle gets from up to four of the pins: the way along the sheet at rest. In storage order.
+/// Distances of each particle from up to four of the pins along the sheet at rest: no particle gets further away. In storage order.
 #[derive(Clone, Debug, Default)]
 pub struct Tethers {
     fields: Fields,
@@ -39,7 +39,7 @@ struct Coming {
     fields: Arc<OnceLock<Fields>>,
 }
 
-/// How much longer still tethers are made where pins are further apart than the sheet between them is long, at most [-].
+/// Largest additional length of tethers where pins are further apart than the sheet between them is long [-].
 const ROOM_BEYOND: f32 = 0.02;
 
 type Fields = [Option<Field>; Tethers::MOST];
@@ -47,7 +47,7 @@ type Fields = [Option<Field>; Tethers::MOST];
 /// Ways from new pins are fresh for so long \[s\].
 const FRESH: f32 = 0.5;
 
-/// How many ways from pins to particles are measured within a step, at most.
+/// Largest number of distances between pins and particles that is measured within a step.
 const WAYS_PER_STEP: usize = 4000;
 
 /// The ways from one pin.
@@ -66,7 +66,7 @@ enum Ways {
 }
 
 impl Ways {
-    /// How far it is to a particle \[m\].
+    /// Distance to a particle \[m\].
     fn length(&self, particle: u32) -> Option<f32> {
         match self {
             Self::Straight(lattice, straight) => {
@@ -87,7 +87,7 @@ pub enum Anchors<'a> {
 }
 
 impl Tethers {
-    /// How many pins particles are tethered to. Of more pins those are chosen that lie furthest apart.
+    /// Number of pins that particles are tethered to. Of more pins those are chosen that lie furthest apart.
     pub const MOST: usize = 4;
 
     /// The pins that particles are tethered to.
@@ -95,7 +95,7 @@ impl Tethers {
         self.fields.iter().flatten().map(|field| field.pin)
     }
 
-    /// How far a particle gets from each of [`Self::pins`] \[m\]; none where there is no such particle.
+    /// Distance of a particle from each of [`Self::pins`] \[m\]; none if there is no such particle.
     pub fn lengths(&self, particle: u32) -> impl Iterator<Item = f32> + '_ {
         self.fields
             .iter()
@@ -103,12 +103,12 @@ impl Tethers {
             .filter_map(move |field| field.ways.length(particle))
     }
 
-    /// Whether some of the pins are new: particles may be farther from them than they get.
+    /// Returns whether some of the pins are new: particles may be farther from them than their tethers allow.
     pub fn is_fresh(&self) -> bool {
         self.fresh > 0.0
     }
 
-    /// What the ways take on the heap \[byte\].
+    /// Memory of the distances on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let fields = self.fields.iter().flatten();
         let ways = fields.map(|field| match &field.ways {
@@ -118,7 +118,7 @@ impl Tethers {
         heap(&self.pins) + ways.sum::<usize>()
     }
 
-    /// How much further a pin is from another than the sheet between them is long, at most [-]; 1 where none is.
+    /// Largest ratio of the distance between two pins to the length of the sheet between them, at least 1 [-].
     fn longer(&self, field: &Field, position: &Points) -> f32 {
         let at = position.get(field.pin as usize);
         let others = self.fields.iter().flatten();
@@ -130,7 +130,7 @@ impl Tethers {
         most * (1.0 + (most - 1.0).min(ROOM_BEYOND))
     }
 
-    /// Where the pins are, and were at the start of the substep, and the ways from each.
+    /// Positions of the pins now and at the start of the substep, and the distances from each.
     pub fn anchors(&self, position: &Points, previous: &Points) -> Anchors<'_> {
         let fields = self.fields.each_ref().map(Option::as_ref);
         let at = |field: &Field| position.get(field.pin as usize);
@@ -240,9 +240,9 @@ impl Tethers {
     }
 }
 
-/// Whether ways along the sheet are straight lines.
+/// Returns whether shortest paths along the sheet are straight lines.
 fn is_straight(topology: &Topology) -> bool {
-    topology.flat && topology.lattice.is_some()
+    topology.flat && topology.lattice().is_some()
 }
 
 /// The ways from these particles.
@@ -252,7 +252,7 @@ fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
     let mut anchors = anchors.iter().copied();
     [(); Tethers::MOST].map(|()| {
         let pin = anchors.next()?;
-        let ways = match (&topology.lattice, &ways) {
+        let ways = match (topology.lattice(), &ways) {
             (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
             (Some(lattice), None) => Ways::Straight(
                 *lattice,

@@ -1,4 +1,4 @@
-//! How long things take.
+//! Measurement of time.
 
 use std::time::Duration;
 
@@ -8,8 +8,7 @@ use std::time::Duration;
 )]
 type Moment = bevy_platform::time::Instant;
 
-/// Tells how much time has passed since it was started, in browsers as well. The one place that asks the clock of the machine:
-/// nothing that is simulated may.
+/// A stopwatch, in browsers as well. It is the only code that asks the clock of the machine: nothing that is simulated may.
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock(Moment);
 

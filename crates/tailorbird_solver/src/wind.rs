@@ -3,16 +3,12 @@
 mod turbulence;
 
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 
-pub use turbulence::{Turbulence, WAVES, Wave, sine};
+pub use turbulence::{ClothTurbulence, WAVES, Wave, sine};
 
-/// Where a zone of wind blows, in the entity's axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
-pub enum WindShape {
+/// Region in which a wind blows, in the axes of its entity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WindRegion {
     /// In the whole world.
     #[default]
     Everywhere,
@@ -23,27 +19,13 @@ pub enum WindShape {
     },
     /// In a sphere around the entity.
     Sphere {
-        /// \[m\]
+        /// Radius \[m\].
         radius: f32,
     },
 }
 
-impl WindShape {
-    /// As large as an entity of this scale makes it.
-    pub fn scaled(self, scale: Vec3) -> Self {
-        let scale = scale.abs();
-        match self {
-            Self::Everywhere => self,
-            Self::Cuboid { half_size } => Self::Cuboid {
-                half_size: half_size * scale,
-            },
-            Self::Sphere { radius } => Self::Sphere {
-                radius: radius * scale.max_element(),
-            },
-        }
-    }
-
-    /// How far a point in the shape's axes is inside its border \[m\]; negative outside.
+impl WindRegion {
+    /// Distance of a point in the shape's axes from its border, inwards \[m\]; negative outside.
     pub fn depth(self, point: Vec3) -> f32 {
         match self {
             Self::Everywhere => f32::INFINITY,
@@ -53,7 +35,7 @@ impl WindShape {
     }
 }
 
-/// How strongly a wind blows that rises over `falloff` \[m\] at a depth inside its border: 0 to 1, without edges.
+/// Strength of a wind at a depth inside its border, over which it rises within `falloff` \[m\]: 0 to 1, smoothly.
 pub fn strength(depth: f32, falloff: f32) -> f32 {
     if falloff > 0.0 {
         let t = (depth / falloff).clamp(0.0, 1.0);

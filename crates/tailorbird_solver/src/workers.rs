@@ -1,10 +1,10 @@
 //! Several threads at one cloth.
 //!
-//! A substep of a large cloth is a row of short phases (its rows, its columns, …), each of which can be done in parts of any
-//! size. Sharing out every phase to a task pool would cost more than it gains, and waiting for all threads at a barrier would
-//! stand still whenever one of them is busy elsewhere. So helpers are called once for a step and look for work by
-//! themselves: whoever comes takes the next part of the phase in progress. The thread that leads takes parts as well, and goes
-//! on when those that were taken are done. A helper that comes late, or never, is not waited for.
+//! A substep of a large cloth is a row of short phases (its rows, its columns, …), each of which can be done in parts of any size. Sharing
+//! out every phase to a task pool would cost more than it gains, and waiting for all threads at a barrier would stand still whenever one of
+//! them is busy elsewhere. So helpers are called once for a step and look for work by themselves: each thread that is free takes the next
+//! part of the phase in progress. The leading thread takes parts as well, and goes on when the taken parts are done. A helper that comes
+//! late, or never, is not waited for.
 
 #![expect(
     unsafe_code,
@@ -23,22 +23,22 @@ use std::{
 
 use bevy_tasks::ComputeTaskPool;
 
-/// Parts of a phase for each thread, so that one that is interrupted does not keep the others waiting for long.
+/// Number of parts of a phase for each thread, so that an interrupted thread does not keep the others waiting for long.
 const PARTS_PER_THREAD: usize = 4;
 
-/// How often a thread looks for something to do before it lets others run.
+/// Number of times that a thread looks for work before it lets others run.
 const SPINS: u32 = 200;
 
-/// Who works on a cloth.
+/// Threads that work on a cloth.
 #[derive(Clone, Copy, Debug)]
 pub struct Workers<'a>(Option<&'a Arc<Queue>>);
 
-/// Where the phases of a step are handed out.
+/// Queue of the phases of a step.
 #[derive(Debug)]
 pub struct Queue {
-    /// Which phase is in progress, in the upper half, and the next part of it to be taken.
+    /// Phase in progress, in the upper half, and its next part to be taken, in the lower.
     ticket: AtomicU64,
-    /// Parts of the phase that are done.
+    /// Number of parts of the phase that are done.
     done: AtomicU32,
     job: Mutex<Job>,
     open: AtomicBool,
@@ -56,7 +56,7 @@ struct Job {
     work: Work,
 }
 
-/// What a phase does with a part of its range.
+/// Work of a phase on a part of its range.
 #[derive(Clone, Copy, Debug)]
 struct Work(Option<*const (dyn Fn(Range<usize>) + Sync)>);
 
@@ -64,10 +64,10 @@ struct Work(Option<*const (dyn Fn(Range<usize>) + Sync)>);
 unsafe impl Send for Work {}
 
 impl Workers<'_> {
-    /// This thread alone.
+    /// The current thread alone.
     pub const ALONE: Workers<'static> = Workers(None);
 
-    /// The length of the parts of a range of this length, in [`Self::share`]: a multiple of 16 where there are several.
+    /// Length of the parts of a range of this length, in [`Self::share`]: a multiple of 16 where there are several.
     pub fn part(self, len: usize) -> usize {
         const GRAIN: usize = 16;
         let parts = self.0.map_or(1, |queue| queue.threads * PARTS_PER_THREAD);
@@ -79,7 +79,7 @@ impl Workers<'_> {
         self.share_by(self.part(all.len()), all, work);
     }
 
-    /// [`Self::share`] in parts of this length.
+    /// Shares as [`Self::share`], in parts of this length.
     pub fn share_by(self, part: usize, all: Range<usize>, work: impl Fn(Range<usize>) + Sync) {
         match self.0 {
             Some(queue) if all.len() > part => queue.run(all, part, &work),
@@ -87,7 +87,7 @@ impl Workers<'_> {
         }
     }
 
-    /// [`Self::share`], for work that tells whether it found something: whether any did.
+    /// Shares as [`Self::share`], and returns whether `work` returned true for any part.
     pub fn any(self, all: Range<usize>, work: impl Fn(Range<usize>) -> bool + Sync) -> bool {
         let found = AtomicBool::new(false);
         self.share(all, |range| {

@@ -5,7 +5,7 @@ use std::{
     process::{Command, Output},
 };
 
-/// What a test of this binary puts out when it runs alone, where an environment variable has this value.
+/// Output of a test of this binary that runs alone, where an environment variable has this value.
 ///
 /// `test` is its whole name, with its modules. What the test harness says is cut off: first, and of a test that takes long.
 pub fn output(test: &str, variable: &str, value: &str) -> Output {

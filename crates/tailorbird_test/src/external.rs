@@ -7,11 +7,11 @@ use tailorbird_cloth::prelude::*;
 /// A collider that goes from one pose to another in the next step, with a friction of 0.5 and no margin, on all layers.
 pub fn external(
     entity: Entity,
-    shape: ColliderShape,
+    shape: ClothColliderShape,
     [start, end]: [Isometry3d; 2],
-    body: Option<ColliderBody>,
-) -> ExternalCollider {
-    ExternalCollider {
+    body: Option<ClothColliderBody>,
+) -> ClothExternalCollider {
+    ClothExternalCollider {
         entity,
         part: 0,
         shape,

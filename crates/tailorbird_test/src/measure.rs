@@ -1,4 +1,4 @@
-//! What is measured, and numbers that look random.
+//! Measurements, and numbers that look random.
 
 use bevy_math::Vec3;
 use tailorbird_cloth::prelude::*;

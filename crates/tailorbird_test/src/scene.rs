@@ -10,7 +10,7 @@ use crate::{
     sim::{G, HZ, Sim},
 };
 
-/// What is simulated.
+/// Scene to simulate.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Width and height \[m\].
@@ -26,18 +26,18 @@ pub struct Scene {
     /// [m/s²].
     pub gravity: Vec3,
     /// In the whole world.
-    pub wind: Wind,
-    /// As many as the resolution asks for by default.
+    pub wind: ClothWind,
+    /// Number of substeps, by default what the resolution asks for.
     pub substeps: Option<u32>,
     /// Of the kernels.
-    pub instruction_set: InstructionSet,
+    pub instruction_set: ClothInstructionSet,
     /// Steps in a second.
     pub hz: f64,
     /// Middle and radius \[m\].
     pub sphere: Option<(Vec3, f32)>,
     /// Of the pool; a process has one, that of the first scene.
     pub threads: Option<usize>,
-    /// How many sheets, 3 m apart along x.
+    /// Number of sheets, 3 m apart along x.
     pub sheets: u32,
     /// Of each sheet.
     pub sleep: ClothSleep,
@@ -53,9 +53,9 @@ impl Default for Scene {
             material: rigid(),
             pins: ClothPins::default(),
             gravity: Vec3::NEG_Z * G,
-            wind: Wind::vacuum(),
+            wind: ClothWind::vacuum(),
             substeps: None,
-            instruction_set: InstructionSet::Auto,
+            instruction_set: ClothInstructionSet::Auto,
             hz: HZ,
             sphere: None,
             threads: None,
@@ -70,7 +70,7 @@ impl Scene {
     pub fn hang(resolution: UVec2) -> Self {
         Self {
             resolution,
-            pins: ClothPins::corners(GridCorner::TOP),
+            pins: ClothPins::corners(ClothCorner::TOP),
             ..Self::default()
         }
     }
@@ -189,7 +189,7 @@ impl Sheet {
         self.sim.resource::<ClothStep>().substep_seconds()
     }
 
-    /// How far particles moved in the last step of 1/60 s, by its length, root of the mean square [m/s].
+    /// Displacement of particles in the last step of 1/60 s, by its length, root of the mean square [m/s].
     pub fn speed(&self) -> f64 {
         let particles = self.particles();
         let (to, from) = (particles.points(), particles.previous_points());
@@ -200,8 +200,8 @@ impl Sheet {
         60.0 * (sum / particles.len() as f64).sqrt()
     }
 
-    /// How far edges are longer than at rest.
-    pub fn stretch(&self) -> Stretch {
+    /// Stretch of all edges.
+    pub fn stretch(&self) -> ClothStretch {
         self.sim.stretch(self.entity)
     }
 
@@ -212,12 +212,12 @@ impl Sheet {
         (0..particles.len()).map(mass).sum()
     }
 
-    /// Whether the first sheet sleeps.
+    /// Returns whether the first sheet sleeps.
     pub fn is_asleep(&self) -> bool {
-        self.get::<ClothRest>().is_asleep()
+        self.get::<ClothSleepState>().is_asleep()
     }
 
-    /// What is wrong with the first sheet, or with where it is.
+    /// Complaint about the first sheet, or about its place.
     pub fn complaint(&self) -> Option<String> {
         let status = self.get::<ClothStatus>();
         if let Some(error) = status.errors().next() {

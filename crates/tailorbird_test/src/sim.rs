@@ -43,7 +43,7 @@ impl Sim {
     /// The same without air.
     pub fn vacuum() -> Self {
         let mut sim = Self::new();
-        sim.app.insert_resource(Wind::vacuum());
+        sim.app.insert_resource(ClothWind::vacuum());
         sim
     }
 
@@ -185,7 +185,7 @@ impl Sim {
         }
     }
 
-    /// As many updates as take so long.
+    /// Updates the app so many times as take so long.
     pub fn seconds(&mut self, seconds: f32) {
         self.frames((seconds / self.frame.as_secs_f32()).round() as u32);
     }
@@ -197,7 +197,7 @@ impl Sim {
 
     /// Attaches a cloth to an entity.
     pub fn attach(&mut self, cloth: Entity, to: Entity, clip: ClothAttachment) -> Entity {
-        self.spawn((clip.to(to), AttachmentOf(cloth)))
+        self.spawn((clip.to(to), ClothAttachmentOf(cloth)))
     }
 
     /// Adds components to an entity.
@@ -210,7 +210,7 @@ impl Sim {
         self.app.world_mut().despawn(entity);
     }
 
-    /// Whether there is such an entity.
+    /// Returns whether there is such an entity.
     pub fn exists(&self, entity: Entity) -> bool {
         self.app.world().get_entity(entity).is_ok()
     }
@@ -220,7 +220,7 @@ impl Sim {
         self.app.world().get(entity).unwrap()
     }
 
-    /// When a component changed last.
+    /// Tick of the last change of a component.
     pub fn changed<C: Component>(&self, entity: Entity) -> Tick {
         let component = self.app.world().entity(entity).get_ref::<C>().unwrap();
         component.last_changed()
@@ -290,15 +290,15 @@ impl Sim {
         speeds.fold(0.0, f32::max)
     }
 
-    /// Whether places and velocities of all particles are finite.
+    /// Returns whether places and velocities of all particles are finite.
     pub fn all_finite(&self, cloth: Entity) -> bool {
         let velocities = self.velocities(cloth);
         let mut all = self.positions(cloth).into_iter().chain(velocities);
         all.all(Vec3::is_finite)
     }
 
-    /// How far edges are longer than at rest.
-    pub fn stretch(&self, cloth: Entity) -> Stretch {
+    /// Stretch of all edges.
+    pub fn stretch(&self, cloth: Entity) -> ClothStretch {
         let topology: &ClothTopology = self.get(cloth);
         self.particles(cloth).stretch(topology)
     }
@@ -322,7 +322,7 @@ impl Sim {
         self.weighted_mean(cloth, &self.positions(cloth))
     }
 
-    /// What is wrong with an entity.
+    /// Errors of an entity.
     pub fn errors(&self, entity: Entity) -> Vec<ClothErrorKind> {
         self.get::<ClothStatus>(entity).errors().cloned().collect()
     }

@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::{
     find::Mutant,
     plant::{Planted, QUESTION, plant},
-    source::Source,
+    source::{Constants, Source},
 };
 
 /// Little optimised, as building takes longer than running, but with the checks of the kernels, which stop at an index that is out of range.
@@ -38,7 +38,11 @@ pub struct Bench {
 
 impl Bench {
     /// Copies the crate, its workspace's manifest and the lock file.
-    pub fn new(workspace: &Path, crate_folder: &Path) -> Result<Self, Box<dyn Error>> {
+    pub fn new(
+        workspace: &Path,
+        crate_folder: &Path,
+        constants: &Constants,
+    ) -> Result<Self, Box<dyn Error>> {
         let target =
             env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
         let target = target.join("mutants");
@@ -75,7 +79,11 @@ impl Bench {
         if copy.join("src").exists() {
             remove_missing(&copy.join("src"), &crate_folder.join("src"))?;
         }
-        copy_folder(&crate_folder.join("src"), &copy.join("src"), false)?;
+        copy_folder(
+            &crate_folder.join("src"),
+            &copy.join("src"),
+            Some(constants),
+        )?;
         Ok(bench)
     }
 
@@ -246,19 +254,25 @@ fn write(path: &Path, text: &str) -> Result<(), Box<dyn Error>> {
     Ok(fs::write(path, text)?)
 }
 
-/// Copies the sources of a folder. Tests of anything but kernels are not built.
-fn copy_folder(from: &Path, to: &Path, of_kernels: bool) -> Result<(), Box<dyn Error>> {
+/// Copies the sources of a folder, in which the kernels' constants are called; of the kernels (none) the folders alone. Tests of anything
+/// but kernels are not built.
+fn copy_folder(
+    from: &Path,
+    to: &Path,
+    constants: Option<&Constants>,
+) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
         let entry = entry?;
         let (from, to) = (entry.path(), to.join(entry.file_name()));
         if from.is_dir() {
-            copy_folder(&from, &to, of_kernels || entry.file_name() == "kernels")?;
-        } else if !of_kernels && from.extension().is_some_and(|extension| extension == "rs") {
-            write(
-                &to,
-                &fs::read_to_string(&from)?.replace("#[test]", "#[cfg(any())]"),
-            )?;
+            let constants = constants.filter(|_| entry.file_name() != "kernels");
+            copy_folder(&from, &to, constants)?;
+        } else if let Some(constants) = constants
+            && from.extension().is_some_and(|extension| extension == "rs")
+        {
+            let text = constants.called(&fs::read_to_string(&from)?)?;
+            write(&to, &text.replace("#[test]", "#[cfg(any())]"))?;
         }
     }
     Ok(())

@@ -27,8 +27,28 @@ impl Source {
     }
 }
 
+/// The kernels' constants that are functions, each behind the name of its file: `line`, `LEAST`.
+#[derive(Default)]
+pub struct Constants(BTreeSet<[String; 2]>);
+
+impl Constants {
+    /// Calls them in a file outside of the kernels' folder.
+    ///
+    /// # Errors
+    ///
+    /// When that is no Rust.
+    pub fn called(&self, text: &str) -> Result<String, Box<dyn Error>> {
+        let imported = self
+            .0
+            .iter()
+            .filter(|names| imported(text, names.as_slice()));
+        let here = imported.map(|[_, name]| name.clone()).collect();
+        edited(text, &here, self)
+    }
+}
+
 /// Reads all files below a folder.
-pub fn read(folder: &Path) -> Result<Vec<Source>, Box<dyn Error>> {
+pub fn read(folder: &Path) -> Result<(Vec<Source>, Constants), Box<dyn Error>> {
     let mut paths = Vec::new();
     files(folder, &mut paths)?;
     paths.sort();
@@ -47,16 +67,17 @@ pub fn read(folder: &Path) -> Result<Vec<Source>, Box<dyn Error>> {
             text,
         });
     }
-    let all = sources.iter().filter(|source| source.is_kernel);
-    let names = all
-        .map(|source| Ok(constants(&source.text.parse()?)))
-        .collect::<Result<Vec<_>, proc_macro2::LexError>>()?
-        .concat();
-    let names: BTreeSet<String> = names.into_iter().collect();
-    for source in &mut sources {
-        source.text = turned(source, &names)?;
+    let mut all = Constants::default();
+    for source in sources.iter().filter(|source| source.is_kernel) {
+        let file = Path::new(&source.name).file_stem().unwrap_or_default();
+        let file = file.to_string_lossy();
+        let names = constants(&source.text.parse()?).into_iter();
+        all.0.extend(names.map(|name| [file.to_string(), name]));
     }
-    Ok(sources)
+    for source in &mut sources {
+        source.text = turned(source, &all)?;
+    }
+    Ok((sources, all))
 }
 
 fn files(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
@@ -85,45 +106,54 @@ fn is_constant(tokens: &[TokenTree]) -> bool {
 }
 
 /// Makes constants functions, and their uses calls, in the files that define or import them.
-fn turned(source: &Source, names: &BTreeSet<String>) -> Result<String, Box<dyn Error>> {
-    let tokens: TokenStream = source.text.parse()?;
+fn turned(source: &Source, all: &Constants) -> Result<String, Box<dyn Error>> {
     let own = if source.is_kernel {
-        constants(&tokens)
+        constants(&source.text.parse()?)
     } else {
         Vec::new()
     };
     let everything = source.text.contains("use super::*;");
     let mut here = BTreeSet::new();
-    for name in names {
+    for [_, name] in &all.0 {
         let is_other = source.text.contains(&format!("const {name}: ")) && !own.contains(name);
-        let imports = everything || imported(&source.text, name) || own.contains(name);
+        let imports =
+            everything || imported(&source.text, std::slice::from_ref(name)) || own.contains(name);
         if imports && !is_other {
             here.insert(name.clone());
         }
     }
+    edited(&source.text, &here, all)
+}
+
+/// Whether a `use` has all of these words.
+fn imported(text: &str, words: &[String]) -> bool {
+    let mut uses = text
+        .split(';')
+        .filter_map(|part| part.rfind("use ").map(|at| &part[at..]));
+    let is_other = |c: char| !c.is_alphanumeric() && c != '_';
+    uses.any(|path| {
+        words
+            .iter()
+            .all(|word| path.split(is_other).any(|of| of == word))
+    })
+}
+
+/// Turns the constants of these names, and calls those behind the names of their files.
+fn edited(text: &str, names: &BTreeSet<String>, all: &Constants) -> Result<String, Box<dyn Error>> {
     let mut edits = Vec::new();
-    walk(tokens, &here, &mut edits);
+    walk(text.parse()?, names, all, &mut edits);
     edits.sort_by_key(|(start, ..)| *start);
-    let mut text = source.text.clone();
+    let mut text = text.to_owned();
     for (start, end, with) in edits.into_iter().rev() {
         text.replace_range(start..end, with);
     }
     Ok(text)
 }
 
-/// Whether a `use` names it.
-fn imported(text: &str, name: &str) -> bool {
-    let mut uses = text
-        .split(';')
-        .filter_map(|part| part.rfind("use ").map(|at| &part[at..]));
-    let is_word = |c: char| !c.is_alphanumeric() && c != '_';
-    uses.any(|path| path.split(is_word).any(|word| word == name))
-}
-
 /// Where to replace what by what.
 type Edit = (usize, usize, &'static str);
 
-fn walk(tokens: TokenStream, names: &BTreeSet<String>, edits: &mut Vec<Edit>) {
+fn walk(tokens: TokenStream, names: &BTreeSet<String>, all: &Constants, edits: &mut Vec<Edit>) {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut k = 0;
     while k < tokens.len() {
@@ -153,12 +183,23 @@ fn walk(tokens: TokenStream, names: &BTreeSet<String>, edits: &mut Vec<Edit>) {
                 }
                 edits.push((range(k).start, range(k).end, "}"));
             }
-            TokenTree::Ident(word) if names.contains(&word.to_string()) => {
+            TokenTree::Ident(word)
+                if names.contains(&word.to_string()) || is_behind(&tokens[..=k], all) =>
+            {
                 edits.push((range(k).end, range(k).end, "()"));
             }
-            TokenTree::Group(group) => walk(group.stream(), names, edits),
+            TokenTree::Group(group) => walk(group.stream(), names, all, edits),
             _ => {}
         }
         k += 1;
     }
+}
+
+/// Whether these tokens end with a constant behind the name of its file.
+fn is_behind(tokens: &[TokenTree], all: &Constants) -> bool {
+    let [.., file, first, second, name] = tokens else {
+        return false;
+    };
+    let is_path = [first, second].iter().all(|token| token.to_string() == ":");
+    is_path && all.0.contains(&[file.to_string(), name.to_string()])
 }

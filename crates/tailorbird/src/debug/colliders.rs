@@ -24,17 +24,17 @@ pub(super) fn draw(
     }
 }
 
-fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ColliderShape, at: Affine3A) {
+fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ClothColliderShape, at: Affine3A) {
     let (scale, rotation, translation) = at.to_scale_rotation_translation();
     let place = Isometry3d::new(translation, rotation);
     let most = scale.abs().max_element();
     let points =
         |points: &[Vec3]| -> Vec<Vec3> { points.iter().map(|p| at.transform_point3(*p)).collect() };
     match shape {
-        ColliderShape::Sphere { radius } => {
+        ClothColliderShape::Sphere { radius } => {
             gizmos.sphere(place, radius * most, COLOR);
         }
-        ColliderShape::Capsule {
+        ClothColliderShape::Capsule {
             radius,
             half_length,
         } => {
@@ -44,7 +44,7 @@ fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ColliderShape, at: Affin
             };
             gizmos.primitive_3d(&capsule, place, COLOR);
         }
-        ColliderShape::TaperedCapsule {
+        ClothColliderShape::TaperedCapsule {
             bottom_radius,
             top_radius,
             half_length,
@@ -52,16 +52,16 @@ fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ColliderShape, at: Affin
             let [bottom, top, half] = [bottom_radius, top_radius, half_length].map(|v| v * most);
             draw_tapered(gizmos, [bottom, top], half, place);
         }
-        ColliderShape::HalfSpace => {
+        ClothColliderShape::HalfSpace => {
             let flat = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
             let square = place * Isometry3d::from_rotation(flat);
             gizmos.rect(square, Vec2::splat(GROUND), COLOR);
             gizmos.ray(translation, rotation * Vec3::Y, COLOR);
         }
-        ColliderShape::Cuboid { half_size } => {
-            gizmos.cube(at * Affine3A::from_scale(2.0 * *half_size), COLOR);
+        ClothColliderShape::Cuboid { size } => {
+            gizmos.cube(at * Affine3A::from_scale(*size), COLOR);
         }
-        ColliderShape::Cylinder {
+        ClothColliderShape::Cylinder {
             radius,
             half_height,
         } => {
@@ -71,14 +71,14 @@ fn draw_shape(gizmos: &mut Gizmos<ClothGizmos>, shape: &ColliderShape, at: Affin
             };
             gizmos.primitive_3d(&cylinder, place, COLOR);
         }
-        ColliderShape::ConvexHull(hull) => {
+        ClothColliderShape::ConvexHull(hull) => {
             draw_triangles(gizmos, &points(hull.points()), hull.triangles());
         }
-        ColliderShape::TriMesh(mesh) => {
+        ClothColliderShape::TriMesh(mesh) => {
             draw_triangles(gizmos, &points(mesh.positions()), mesh.triangles());
         }
-        ColliderShape::HeightField(field) => draw_terrain(gizmos, field, at),
-        ColliderShape::Compound(compound) => {
+        ClothColliderShape::HeightField(field) => draw_terrain(gizmos, field, at),
+        ClothColliderShape::Compound(compound) => {
             for (part, shape) in compound.parts() {
                 let part = Affine3A::from_rotation_translation(
                     part.rotation,

@@ -1,4 +1,4 @@
-//! Where air moves, and how.
+//! Arrows of moving air.
 
 use bevy_color::{Alpha, Srgba, palettes::tailwind};
 use bevy_ecs::prelude::*;
@@ -17,12 +17,12 @@ const ARROWS: i32 = 5;
 /// Length of an arrow for 1 m/s \[m\].
 const PER_SPEED: f32 = 0.04;
 
-/// What is slower has no arrow [m/s].
+/// Speed below which air has no arrow [m/s].
 const STILL: f32 = 0.05;
 
 pub(super) fn draw(
-    wind: Res<BlowingWind>,
-    zones: Query<(&WindZone, &GlobalTransform)>,
+    wind: Res<ClothWindState>,
+    zones: Query<(&ClothWindZone, &GlobalTransform)>,
     cloths: Query<(&ClothFrame, &ClothBounds), With<Cloth>>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
@@ -30,16 +30,16 @@ pub(super) fn draw(
         let at = transform.affine();
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
         let half = match zone.shape {
-            WindShape::Everywhere => continue,
-            WindShape::Cuboid { half_size } => {
-                gizmos.cube(at * Affine3A::from_scale(2.0 * half_size), COLOR);
-                let inner = (half_size * scale.abs() - zone.falloff).max(Vec3::ZERO);
+            ClothWindShape::Cuboid { size } => {
+                gizmos.cube(at * Affine3A::from_scale(size), COLOR);
+                let half = 0.5 * size * scale.abs();
+                let inner = (half - zone.falloff).max(Vec3::ZERO);
                 let full =
                     Affine3A::from_scale_rotation_translation(2.0 * inner, rotation, translation);
                 gizmos.cube(full, COLOR.with_alpha(0.3));
-                half_size * scale.abs()
+                half
             }
-            WindShape::Sphere { radius } => {
+            ClothWindShape::Sphere { radius } => {
                 let radius = radius * scale.abs().max_element();
                 let place = Isometry3d::new(translation, rotation);
                 gizmos.sphere(place, radius, COLOR);
@@ -60,7 +60,7 @@ pub(super) fn draw(
 }
 
 /// Arrows in a box of these half sides.
-fn arrows(gizmos: &mut Gizmos<ClothGizmos>, wind: &BlowingWind, place: Isometry3d, half: Vec3) {
+fn arrows(gizmos: &mut Gizmos<ClothGizmos>, wind: &ClothWindState, place: Isometry3d, half: Vec3) {
     if !half.is_finite() {
         return;
     }

@@ -1,6 +1,6 @@
 //! Textures and materials, each made once.
 
-use std::{array, collections::HashMap};
+use std::{array, borrow::Cow, collections::HashMap};
 
 use bevy_asset::prelude::*;
 use bevy_color::ColorToComponents;
@@ -15,13 +15,13 @@ use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use tailorbird_cloth::prelude::*;
 
 use super::{
-    ClothLook, Fabric,
+    ClothFabric, ClothLook,
     mipmaps::{Texels, with_mipmaps},
 };
 
 /// The textures of a fabric: what their files are called, and what is in them.
-fn kinds(fabric: Fabric) -> [(&'static str, Texels); 3] {
-    let albedo = if fabric.has_holes() {
+fn kinds(has_holes: bool) -> [(&'static str, Texels); 3] {
+    let albedo = if has_holes {
         Texels::Cutout
     } else {
         Texels::Color
@@ -35,15 +35,23 @@ fn kinds(fabric: Fabric) -> [(&'static str, Texels); 3] {
 
 /// The fabrics that are in use.
 #[derive(Resource, Debug)]
-pub struct FabricLibrary {
-    /// Where there are textures.
+pub struct ClothFabricLibrary {
+    /// Folder of the textures.
     folder: Option<String>,
-    textures: HashMap<Fabric, Textures>,
+    /// By the names of fabrics, and whether they have holes.
+    textures: HashMap<(Cow<'static, str>, bool), Textures>,
     materials: HashMap<Key, AssetId<StandardMaterial>>,
 }
 
-/// Fabric, dye, tiles along u and v, and whether it has textures.
-type Key = (Fabric, [u32; 4], [u32; 2], bool);
+/// Key of cloths that look alike.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct Key {
+    /// Name of the fabric, and whether it has holes.
+    fabric: (Cow<'static, str>, bool),
+    /// Color, dye, roughness, reflectance, transmission, tiles along u and v.
+    numbers: [u32; 13],
+    textured: bool,
+}
 
 /// The textures of a fabric, in the order of [`kinds`].
 #[derive(Debug)]
@@ -56,7 +64,7 @@ enum Textures {
     Missing,
 }
 
-impl FabricLibrary {
+impl ClothFabricLibrary {
     pub(super) fn new(folder: Option<String>) -> Self {
         Self {
             folder,
@@ -65,7 +73,7 @@ impl FabricLibrary {
         }
     }
 
-    /// Whether all fabrics that cloths are made of look as they are to: none of their textures is still being loaded.
+    /// Returns whether all fabrics of cloths look as they are to: none of their textures is still being loaded.
     pub fn is_ready(&self) -> bool {
         let pending =
             |textures: &Textures| matches!(textures, Textures::Loading(_) | Textures::Shrinking(_));
@@ -76,7 +84,7 @@ impl FabricLibrary {
 /// Gives cloths the material of their look.
 pub(super) fn dress_cloths(
     mut commands: Commands,
-    mut library: ResMut<FabricLibrary>,
+    mut library: ResMut<ClothFabricLibrary>,
     server: Res<AssetServer>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     cloths: Query<(Entity, &ClothLook, Option<&Cloth>), Or<(Changed<ClothLook>, Changed<Cloth>)>>,
@@ -84,7 +92,7 @@ pub(super) fn dress_cloths(
     let library = &mut *library;
     for (entity, look, cloth) in &cloths {
         let ClothLook {
-            fabric,
+            ref fabric,
             dye,
             textured,
             uv_size,
@@ -92,11 +100,22 @@ pub(super) fn dress_cloths(
         let size = uv_size
             .or_else(|| cloth.and_then(Cloth::size))
             .unwrap_or(Vec2::ONE);
-        let tiles = size / fabric.tile();
+        let tiles = size / fabric.tile;
         let folder = library.folder.as_ref().filter(|_| textured);
         let textured = folder.is_some();
-        let color = dye.to_linear().to_f32_array().map(f32::to_bits);
-        let key = (fabric, color, tiles.to_array().map(f32::to_bits), textured);
+        let [own, dyed] = [fabric.color, dye].map(|color| color.to_linear().to_f32_array());
+        let mut numbers = own.into_iter().chain(dyed).chain([
+            fabric.roughness,
+            fabric.reflectance,
+            fabric.transmission,
+            tiles.x,
+            tiles.y,
+        ]);
+        let key = Key {
+            fabric: (fabric.name.clone(), fabric.has_holes),
+            numbers: array::from_fn(|_| numbers.next().unwrap_or(0.0).to_bits()),
+            textured,
+        };
         let known = library.materials.get(&key);
         let material = known.and_then(|id| materials.get_strong_handle(*id));
         let material = material.unwrap_or_else(|| {
@@ -104,16 +123,19 @@ pub(super) fn dress_cloths(
             let mut material = fabric.surface(dye, textured);
             material.uv_transform = Affine2::from_scale(tiles);
             if let Some(folder) = folder {
-                let textures = library.textures.entry(fabric).or_insert_with(|| {
-                    Textures::Loading(kinds(fabric).map(|(kind, texels)| {
-                        let path = format!("{folder}/{}_{kind}.png", fabric.name());
-                        let settings = move |settings: &mut ImageLoaderSettings| {
-                            settings.is_srgb = matches!(texels, Texels::Color | Texels::Cutout);
-                            settings.sampler = repeating(texels == Texels::Cutout);
-                        };
-                        server.load_builder().with_settings(settings).load(path)
-                    }))
-                });
+                let textures = library
+                    .textures
+                    .entry(key.fabric.clone())
+                    .or_insert_with(|| {
+                        Textures::Loading(kinds(fabric.has_holes).map(|(kind, texels)| {
+                            let path = format!("{folder}/{}_{kind}.png", fabric.name);
+                            let settings = move |settings: &mut ImageLoaderSettings| {
+                                settings.is_srgb = matches!(texels, Texels::Color | Texels::Cutout);
+                                settings.sampler = repeating(texels == Texels::Cutout);
+                            };
+                            server.load_builder().with_settings(settings).load(path)
+                        }))
+                    });
                 if let Textures::Ready(textures) = textures {
                     put_on(&mut material, textures);
                 }
@@ -128,7 +150,7 @@ pub(super) fn dress_cloths(
 
 /// Makes smaller copies of the textures that have been loaded, and gives them to the materials that wait for them.
 pub(super) fn load_textures(
-    mut library: ResMut<FabricLibrary>,
+    mut library: ResMut<ClothFabricLibrary>,
     server: Res<AssetServer>,
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -136,7 +158,7 @@ pub(super) fn load_textures(
     if library.is_ready() {
         return;
     }
-    let FabricLibrary {
+    let ClothFabricLibrary {
         textures,
         materials: ours,
         ..
@@ -152,7 +174,7 @@ pub(super) fn load_textures(
                 let [Some(a), Some(b), Some(c)] = loaded else {
                     continue;
                 };
-                let kinds = kinds(*fabric);
+                let kinds = kinds(fabric.1);
                 let task = async move {
                     let mut full = [a, b, c].into_iter().zip(kinds);
                     array::from_fn(|_| {
@@ -170,8 +192,8 @@ pub(super) fn load_textures(
                 };
                 let made = made.map(|image| images.add(image));
                 for (key, id) in &*ours {
-                    if key.0 == *fabric
-                        && key.3
+                    if key.fabric == *fabric
+                        && key.textured
                         && let Some(mut material) = materials.get_mut(*id)
                     {
                         put_on(&mut material, &made);

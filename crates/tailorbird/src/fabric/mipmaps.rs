@@ -4,7 +4,7 @@ use bevy_image::Image;
 use bevy_math::Vec3;
 use bevy_render::render_resource::TextureFormat;
 
-/// What the numbers of a texture are, and so what their mean is.
+/// Meaning of the numbers of a texture, which decides how they are averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texels {
     /// Colours in sRGB: the mean is that of the light.

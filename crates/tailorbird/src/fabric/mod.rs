@@ -9,9 +9,9 @@
 //! fn curtain(mut commands: Commands) {
 //!     let shape = Cloth::grid(Vec2::new(2.0, 1.5), UVec2::new(64, 48));
 //!     // Moves like silk and looks like it.
-//!     commands.spawn((shape.clone(), Fabric::Silk.bundle()));
+//!     commands.spawn((shape.clone(), ClothFabric::SILK.bundle()));
 //!     // Looks like lace, and moves like leather.
-//!     commands.spawn((shape, ClothLook::new(Fabric::Lace), ClothMaterial::leather()));
+//!     commands.spawn((shape, ClothLook::new(ClothFabric::LACE), ClothMaterial::leather()));
 //! }
 //! ```
 //!
@@ -24,10 +24,12 @@ mod embedded;
 mod library;
 mod mipmaps;
 
+use std::borrow::Cow;
+
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_asset::AssetServer;
 use bevy_camera::visibility::VisibilitySystems;
-use bevy_color::Color;
+use bevy_color::{Color, LinearRgba};
 use bevy_ecs::prelude::*;
 use bevy_material::AlphaMode;
 use bevy_math::Vec2;
@@ -35,105 +37,152 @@ use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use tailorbird_cloth::prelude::*;
 
-pub use library::FabricLibrary;
+pub use library::ClothFabricLibrary;
 use library::{dress_cloths, load_textures};
 pub use mipmaps::{Texels, with_mipmaps};
 
-/// A fabric with a name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
-pub enum Fabric {
-    /// [`ClothMaterial::silk`]: a satin that shines.
-    Silk,
-    /// [`ClothMaterial::cotton`]: plain weave.
-    #[default]
-    Cotton,
-    /// [`ClothMaterial::denim`]: blue twill.
-    Denim,
-    /// [`ClothMaterial::canvas`]: plain weave of thick yarns.
-    Canvas,
-    /// [`ClothMaterial::leather`]: grained.
-    Leather,
-    /// [`ClothMaterial::rubber`]: dull black.
-    Rubber,
-    /// [`ClothMaterial::lace`]: flowers on a net, with holes.
-    Lace,
+/// A fabric: how cloth moves and looks. The presets are constants; a game makes its own as any other value:
+///
+/// ```
+/// # use bevy_color::{Color, LinearRgba};
+/// # use tailorbird::prelude::*;
+/// let velvet = ClothFabric {
+///     // `velvet_albedo.png`, `velvet_normal.png`, `velvet_metallic_roughness.png` in `ClothFabricPlugin::folder`.
+///     name: "velvet".into(),
+///     material: ClothMaterial { areal_density: 0.35, ..ClothMaterial::cotton() },
+///     color: Color::srgb(0.3, 0.02, 0.06),
+///     ..ClothFabric::COTTON
+/// };
+/// ```
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Default)]
+pub struct ClothFabric {
+    /// Name, by which its textures begin; two fabrics of one name have the same textures.
+    pub name: Cow<'static, str>,
+    /// Material for the simulation.
+    pub material: ClothMaterial,
+    /// Colour where it has no textures: the mean of that of its texture.
+    pub color: Color,
+    /// Perceptual roughness where it has no textures, 0.089 to 1 [-].
+    pub roughness: f32,
+    /// Specular intensity, 0 to 1 [-]: [`StandardMaterial::reflectance`].
+    pub reflectance: f32,
+    /// The part of the light that shines through, 0 to 1 [-]: [`StandardMaterial::diffuse_transmission`].
+    pub transmission: f32,
+    /// True if its texture has holes.
+    pub has_holes: bool,
+    /// Side of one tile of its textures \[m\].
+    pub tile: f32,
 }
 
-impl Fabric {
-    /// All of them.
+impl Default for ClothFabric {
+    /// Cotton.
+    fn default() -> Self {
+        Self::COTTON
+    }
+}
+
+impl ClothFabric {
+    /// [`ClothMaterial::silk`]: a satin that shines.
+    pub const SILK: Self = Self {
+        roughness: 0.5,
+        reflectance: 0.4,
+        transmission: 0.3,
+        tile: 0.06,
+        ..Self::plain("silk", ClothMaterial::silk())
+    };
+    /// [`ClothMaterial::cotton`]: plain weave.
+    pub const COTTON: Self = Self {
+        transmission: 0.2,
+        ..Self::plain("cotton", ClothMaterial::cotton())
+    };
+    /// [`ClothMaterial::denim`]: blue twill.
+    pub const DENIM: Self = Self {
+        color: Color::srgb(0.16, 0.23, 0.38),
+        reflectance: 0.25,
+        ..Self::plain("denim", ClothMaterial::denim())
+    };
+    /// [`ClothMaterial::canvas`]: plain weave of thick yarns.
+    pub const CANVAS: Self = Self {
+        transmission: 0.08,
+        ..Self::plain("canvas", ClothMaterial::canvas())
+    };
+    /// [`ClothMaterial::leather`]: grained.
+    pub const LEATHER: Self = Self {
+        color: Color::srgb(0.38, 0.24, 0.15),
+        roughness: 0.55,
+        reflectance: 0.5,
+        ..Self::plain("leather", ClothMaterial::leather())
+    };
+    /// [`ClothMaterial::rubber`]: dull black.
+    pub const RUBBER: Self = Self {
+        color: Color::srgb(0.19, 0.19, 0.19),
+        roughness: 0.7,
+        reflectance: 0.5,
+        ..Self::plain("rubber", ClothMaterial::rubber())
+    };
+    /// [`ClothMaterial::lace`]: flowers on a net, with holes.
+    pub const LACE: Self = Self {
+        transmission: 0.35,
+        has_holes: true,
+        tile: 0.25,
+        ..Self::plain("lace", ClothMaterial::lace())
+    };
+
+    /// The presets.
     pub const ALL: [Self; 7] = [
-        Self::Silk,
-        Self::Cotton,
-        Self::Denim,
-        Self::Canvas,
-        Self::Leather,
-        Self::Rubber,
-        Self::Lace,
+        Self::SILK,
+        Self::COTTON,
+        Self::DENIM,
+        Self::CANVAS,
+        Self::LEATHER,
+        Self::RUBBER,
+        Self::LACE,
     ];
 
-    /// Its name, in lower case: that of its textures.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Silk => "silk",
-            Self::Cotton => "cotton",
-            Self::Denim => "denim",
-            Self::Canvas => "canvas",
-            Self::Leather => "leather",
-            Self::Rubber => "rubber",
-            Self::Lace => "lace",
+    /// Rough, white, opaque.
+    const fn plain(name: &'static str, material: ClothMaterial) -> Self {
+        Self {
+            name: Cow::Borrowed(name),
+            material,
+            color: Color::WHITE,
+            roughness: 1.0,
+            reflectance: 0.3,
+            transmission: 0.0,
+            has_holes: false,
+            tile: 0.1,
         }
     }
 
-    /// The fabric of this name.
+    /// The preset of this name.
     pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|fabric| fabric.name() == name)
+        Self::ALL.into_iter().find(|fabric| fabric.name == name)
     }
 
-    /// How it moves.
-    pub const fn physics(self) -> ClothMaterial {
-        match self {
-            Self::Silk => ClothMaterial::silk(),
-            Self::Cotton => ClothMaterial::cotton(),
-            Self::Denim => ClothMaterial::denim(),
-            Self::Canvas => ClothMaterial::canvas(),
-            Self::Leather => ClothMaterial::leather(),
-            Self::Rubber => ClothMaterial::rubber(),
-            Self::Lace => ClothMaterial::lace(),
-        }
-    }
-
-    /// How it moves and how it looks, for the entity of a cloth.
+    /// Material and look, for the entity of a cloth.
     pub fn bundle(self) -> impl Bundle {
-        (self.physics(), ClothLook::new(self))
+        self.dyed(Color::WHITE)
     }
 
-    /// How its surface takes light, without textures: what has a colour of its own in the mean of its texture.
-    fn surface(self, dye: Color, textured: bool) -> StandardMaterial {
-        let (roughness, reflectance, through) = match self {
-            Self::Silk => (0.5, 0.4, 0.3),
-            Self::Cotton => (1.0, 0.3, 0.2),
-            Self::Denim => (1.0, 0.25, 0.0),
-            Self::Canvas => (1.0, 0.3, 0.08),
-            Self::Leather => (0.55, 0.5, 0.0),
-            Self::Rubber => (0.7, 0.5, 0.0),
-            Self::Lace => (1.0, 0.3, 0.35),
-        };
-        // Textures have the roughness of each place.
-        let perceptual_roughness = if textured { 1.0 } else { roughness };
-        let base_color = match self {
-            _ if textured => dye,
-            Self::Denim => Color::srgb(0.16, 0.23, 0.38),
-            Self::Leather => Color::srgb(0.38, 0.24, 0.15),
-            Self::Rubber => Color::srgb(0.19, 0.19, 0.19),
-            _ => dye,
-        };
+    /// The same, dyed.
+    pub fn dyed(self, dye: impl Into<Color>) -> impl Bundle {
+        (self.material, ClothLook::new(self).with_dye(dye))
+    }
+
+    /// Surface material without textures.
+    fn surface(&self, dye: Color, textured: bool) -> StandardMaterial {
         StandardMaterial {
-            base_color,
-            perceptual_roughness,
-            reflectance,
+            base_color: if textured {
+                dye
+            } else {
+                product(self.color, dye)
+            },
+            // Textures have the roughness of each place.
+            perceptual_roughness: if textured { 1.0 } else { self.roughness },
+            reflectance: self.reflectance,
             metallic: 0.0,
-            diffuse_transmission: through,
-            alpha_mode: if textured && self.has_holes() {
+            diffuse_transmission: self.transmission,
+            alpha_mode: if textured && self.has_holes {
                 AlphaMode::AlphaToCoverage
             } else {
                 AlphaMode::Opaque
@@ -143,40 +192,43 @@ impl Fabric {
             ..StandardMaterial::default()
         }
     }
-
-    /// Whether there is nothing at some places of its texture.
-    const fn has_holes(self) -> bool {
-        matches!(self, Self::Lace)
-    }
-
-    /// The side of one tile of its textures \[m\].
-    pub const fn tile(self) -> f32 {
-        match self {
-            Self::Silk => 0.06,
-            Self::Lace => 0.25,
-            _ => 0.1,
-        }
-    }
 }
 
-/// How a cloth looks: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+/// A colour that is dyed.
+fn product(color: Color, dye: Color) -> Color {
+    if color == Color::WHITE {
+        return dye;
+    }
+    if dye == Color::WHITE {
+        return color;
+    }
+    let [a, b] = [color, dye].map(|color| color.to_linear());
+    LinearRgba::new(
+        a.red * b.red,
+        a.green * b.green,
+        a.blue * b.blue,
+        a.alpha * b.alpha,
+    )
+    .into()
+}
+
+/// Look of a cloth: on the entity of a [`Cloth`] it gives it a `MeshMaterial3d<StandardMaterial>`, in place of one that is there.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothLook {
-    /// What it is made of.
-    pub fabric: Fabric,
-    /// What the fabric's own colour is multiplied with.
+    /// Fabric of the cloth.
+    pub fabric: ClothFabric,
+    /// Factor of the fabric's own colour.
     pub dye: Color,
-    /// Whether it has the textures of its fabric.
+    /// True if it has the textures of its fabric.
     pub textured: bool,
-    /// How long a unit of the texture coordinates is on the cloth \[m\]. Where it is not given, that is the size of a grid, and 1 m for
-    /// any other mesh.
+    /// Length of a unit of the texture coordinates on the cloth \[m\]. By default the size of a grid, and 1 m for any other mesh.
     pub uv_size: Option<Vec2>,
 }
 
 impl ClothLook {
-    /// As the fabric comes, undyed.
-    pub fn new(fabric: Fabric) -> Self {
+    /// Look of a fabric, undyed.
+    pub fn new(fabric: ClothFabric) -> Self {
         Self {
             fabric,
             dye: Color::WHITE,
@@ -197,7 +249,7 @@ impl ClothLook {
 
 impl Default for ClothLook {
     fn default() -> Self {
-        Self::new(Fabric::default())
+        Self::new(ClothFabric::default())
     }
 }
 
@@ -225,7 +277,7 @@ impl Plugin for ClothFabricPlugin {
         #[cfg(not(feature = "fabric_textures"))]
         let folder = self.folder.clone();
         app.register_type::<ClothLook>()
-            .insert_resource(FabricLibrary::new(folder))
+            .insert_resource(ClothFabricLibrary::new(folder))
             .add_systems(
                 PostUpdate,
                 (dress_cloths, load_textures)

@@ -1,10 +1,9 @@
 //! Builds the meshes of a cloth.
 
-use bevy_asset::{AssetId, Assets, Handle};
+use bevy_asset::{AssetId, Assets};
 use bevy_camera::visibility::NoAutoAabb;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
-use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexAttributeValues};
+use bevy_mesh::{Mesh, Mesh3d};
 use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
@@ -13,123 +12,9 @@ use tailorbird_cloth::{
 };
 
 use super::{
-    ClothMeshWrite, follow::Follow, from_mesh::ClothMeshSource, packed::Packed, parts::MeshSource,
+    ClothMesh, ClothMeshOf, ClothMeshPart, make::ClothMeshSource, parts::MeshSource,
     vertices::Vertices,
 };
-use crate::drawn::ClothDrawnHolds;
-
-/// How the vertices of a cloth's meshes follow from its particles. Written by this plugin alone.
-#[derive(Component)]
-#[require(ClothDrawnHolds)]
-pub struct ClothMesh {
-    /// Of the topology it was built from.
-    pub(super) revision: u64,
-    /// Of the meshes that it was built from; 0 where it was not.
-    made: u64,
-    pub(super) shading: ClothShading,
-    pub(crate) parts: Vec<ClothMeshPart>,
-}
-
-impl ClothMesh {
-    /// The meshes: one, but for a cloth that was made of several.
-    pub fn parts(&self) -> &[ClothMeshPart] {
-        &self.parts
-    }
-}
-
-/// One mesh of a cloth.
-pub struct ClothMeshPart {
-    pub(super) entity: Entity,
-    pub(crate) handle: Handle<Mesh>,
-    pub(super) follow: Follow,
-    /// Its vertices; absent before they are known, and where the mesh has no place for them.
-    pub(super) packed: Option<Packed>,
-    /// What the vertices show: steps, part of the step, scale.
-    pub(super) shows: Option<(u64, f32, Vec3)>,
-    /// Whether the vertices changed since they were written.
-    pub(super) fresh: bool,
-    /// Whether the asset has been written since the mesh was built.
-    pub(super) in_asset: bool,
-    /// Where the vertices were to go when they were computed last.
-    pub(super) went: Option<ClothMeshWrite>,
-    /// Whether the last change of the asset was ours.
-    pub(crate) own_change: bool,
-    /// Whether others have changed the asset.
-    pub(super) outdated: bool,
-}
-
-impl ClothMeshPart {
-    pub(super) fn new(follow: Follow) -> Self {
-        Self {
-            entity: Entity::PLACEHOLDER,
-            handle: Handle::default(),
-            follow,
-            packed: None,
-            shows: None,
-            fresh: false,
-            in_asset: false,
-            went: None,
-            own_change: false,
-            outdated: false,
-        }
-    }
-
-    /// Gives its mesh a place for an attribute, with these values for so many vertices, or takes it away.
-    pub(super) fn fit_attribute(
-        &mut self,
-        meshes: &mut Assets<Mesh>,
-        attribute: MeshVertexAttribute,
-        wanted: bool,
-        values: impl FnOnce(usize) -> VertexAttributeValues,
-    ) {
-        let differs = |mesh: &Mesh| {
-            mesh.try_contains_attribute(attribute)
-                .is_ok_and(|has| has != wanted)
-        };
-        if !meshes.get(&self.handle).is_some_and(differs) {
-            return;
-        }
-        let Some(mut mesh) = meshes.get_mut(&self.handle) else {
-            return;
-        };
-        let changed = if wanted {
-            let values = values(mesh.count_vertices());
-            mesh.try_insert_attribute(attribute, values).is_ok()
-        } else {
-            mesh.try_remove_attribute(attribute).is_ok()
-        };
-        self.own_change |= changed;
-    }
-
-    /// The entity that has the mesh: the cloth itself or one below it.
-    pub fn entity(&self) -> Entity {
-        self.entity
-    }
-
-    /// For each vertex of the mesh the particle that moves it.
-    pub fn particle_of_vertex(&self) -> &[u32] {
-        &self.follow.particle_of_vertex
-    }
-}
-
-/// An entity whose `Mesh3d` shows a cloth, or a part of it. Written by this plugin alone.
-#[derive(Component, Clone, Debug)]
-pub struct ClothMeshOf {
-    pub(super) cloth: Entity,
-    /// The mesh that shows the cloth.
-    pub(super) built: Handle<Mesh>,
-    /// The mesh that was here before.
-    pub(super) source: Option<Handle<Mesh>>,
-    /// Whether its backs are drawn by the triangles of its fronts.
-    pub(super) two_sided: bool,
-}
-
-impl ClothMeshOf {
-    /// The cloth.
-    pub fn cloth(&self) -> Entity {
-        self.cloth
-    }
-}
 
 /// Builds meshes for cloths that have none, or whose topology or shading changed.
 pub(super) fn build_cloth_mesh(
@@ -165,7 +50,7 @@ pub(super) fn build_cloth_mesh(
             ClothShape::Mesh { positions, .. } => {
                 topology.particles_of_vertices().len() == positions.len()
             }
-            _ => topology.grid.is_some(),
+            _ => topology.is_grid(),
         };
         // A mesh that could not be written yet would be nowhere for a while.
         if current || !matches || topology.revision == 0 || normals.shading() != *shading {

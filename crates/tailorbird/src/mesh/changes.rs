@@ -27,7 +27,7 @@ pub(super) fn note_ready(
     }
 }
 
-/// What tells that a cloth may have to be made anew.
+/// Changes after which a cloth may have to be made anew.
 #[derive(SystemParam)]
 pub(super) struct Changes<'w, 's> {
     touched: Query<
@@ -49,7 +49,7 @@ pub(super) struct Changes<'w, 's> {
     events: MessageReader<'w, 's, AssetEvent<Mesh>>,
 }
 
-/// What happened since that was asked last.
+/// Changes since the last call.
 pub(super) struct Happened {
     /// Entities with a [`ClothFromMesh`] that have other meshes at or below them, perhaps.
     pub makers: HashSet<Entity>,
@@ -58,7 +58,7 @@ pub(super) struct Happened {
 }
 
 impl Changes<'_, '_> {
-    /// What happened since it was asked last.
+    /// Reads the changes since the last call.
     pub fn read(&mut self) -> Happened {
         let changed = self.events.read().filter_map(|event| match event {
             AssetEvent::Modified { id } => Some(*id),

@@ -18,22 +18,23 @@ use super::{parts::append, plain};
 /// let hull = ClothCollider::convex_hull_from_mesh(&mesh)?;
 /// # Ok::<(), ClothErrorKind>(())
 /// ```
-pub trait ColliderFromMesh: Sized {
+pub trait ClothColliderFromMesh: Sized {
     /// A collider of all triangles of the mesh.
     ///
     /// # Errors
-    /// Where the mesh is not kept in the main world, is no list of triangles, or has no positions that can be read; as
+    /// An error if the mesh is not kept in the main world, is no list of triangles, or has no positions that can be read; and the errors of
     /// [`ClothCollider::trimesh`].
     fn trimesh_from_mesh(mesh: &Mesh) -> Result<Self, ClothErrorKind>;
 
     /// The convex hull of the vertices of the mesh.
     ///
     /// # Errors
-    /// Where the mesh is not kept in the main world, or has no positions that can be read; as [`ClothCollider::convex_hull`].
+    /// An error if the mesh is not kept in the main world, or has no positions that can be read; and the errors of
+    /// [`ClothCollider::convex_hull`].
     fn convex_hull_from_mesh(mesh: &Mesh) -> Result<Self, ClothErrorKind>;
 }
 
-impl ColliderFromMesh for ClothCollider {
+impl ClothColliderFromMesh for ClothCollider {
     fn trimesh_from_mesh(mesh: &Mesh) -> Result<Self, ClothErrorKind> {
         let (mut positions, mut indices) = (Vec::new(), Vec::new());
         append(mesh, None, &mut positions, &mut indices)?;

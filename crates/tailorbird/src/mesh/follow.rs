@@ -1,44 +1,23 @@
-//! How the vertices of a mesh follow from particles and normals.
+//! Vertices of a mesh, from particles and normals.
 
 use bevy_math::{Affine3A, Mat3, Vec3};
 use bevy_tasks::{ComputeTaskPool, TaskPool};
-use tailorbird_cloth::{normals::ClothNormals, particles::ClothParticles};
 
 use super::{
+    binding::{Bindings, ClothVertexBinding},
+    drawn::Drawn,
     interleave::{Interleaved, SheetVertices},
     interleaved::{VertexOrder, write_normals, write_positions, write_sheet},
     packed::Packed,
     tangents::{Surface, Tangents},
 };
-use crate::drawn::ClothDrawnHolds;
 
 /// Vertices that a task has at least.
 pub(super) const PIECE: usize = 8192;
 
-/// What vertices follow.
-#[derive(Clone, Copy)]
-pub(super) struct Drawn<'a> {
-    pub particles: &'a ClothParticles,
-    pub normals: &'a ClothNormals,
-    pub holds: &'a ClothDrawnHolds,
-    /// The part of the way between the last two steps, 0 to 1.
-    pub fraction: f32,
-    /// Of the cloth's entity.
-    pub scale: Vec3,
-}
-
-impl Drawn<'_> {
-    /// Whether normals in the cloth's frame are those in its space.
-    fn is_scaled_evenly(&self) -> bool {
-        let Vec3 { x, y, z } = self.scale;
-        x == y && y == z && x > 0.0
-    }
-}
-
-/// Which particle and which normal each vertex of a mesh follows.
+/// Particle and normal that each vertex of a mesh follows.
 pub(super) struct Follow {
-    /// For each vertex its particle.
-    pub particle_of_vertex: Vec<u32>,
+    pub bindings: Bindings,
     /// For each vertex its normal: of a particle when smooth, of a triangle when flat.
     normal_of_vertex: Vec<u32>,
     /// The first of the particles and of the normals, where they are in the order of the vertices.
@@ -71,7 +50,7 @@ impl Follow {
         };
         let in_order = [&particle_of_vertex, &normal_of_vertex].map(|list| first(list));
         Self {
-            particle_of_vertex,
+            bindings: particle_of_vertex.into(),
             normal_of_vertex,
             columns: columns.filter(|_| in_order == [Some(0); 2] && backs.is_empty()),
             in_order: in_order.map(|first| first.map(|i| i as usize)),
@@ -84,7 +63,17 @@ impl Follow {
 
     /// The number of vertices.
     pub fn len(&self) -> usize {
-        self.particle_of_vertex.len()
+        self.bindings.particles().len()
+    }
+
+    /// Binds a vertex to something else. Returns whether there is such a vertex.
+    pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
+        let bound = self.bindings.set(vertex, binding);
+        if bound {
+            self.in_order[0] = None;
+            self.columns = None;
+        }
+        bound
     }
 
     /// Writes positions, normals and tangents; where there are many, in several tasks.
@@ -99,7 +88,7 @@ impl Follow {
             this.place(drawn, k * piece, words, stride, places);
         });
         if let (Some(tangents), Some(place)) = (&self.tangents, packed.tangent) {
-            self.found.resize(self.particle_of_vertex.len(), [0.0; 4]);
+            self.found.resize(self.bindings.particles().len(), [0.0; 4]);
             let surface = Surface {
                 words: &packed.words,
                 stride,
@@ -184,7 +173,7 @@ impl Follow {
             fraction,
             drawn.holds,
             scale.recip(),
-            order(0, &self.particle_of_vertex[vertices.clone()]),
+            order(0, &self.bindings.particles()[vertices.clone()]),
             Interleaved {
                 words,
                 stride,
@@ -201,6 +190,14 @@ impl Follow {
                 offset: normal,
             },
         );
+        self.bindings
+            .place(drawn, vertices.clone(), |vertex, at, along| {
+                let words = &mut words[(vertex - first) * stride..][..stride];
+                words[position..position + 3].copy_from_slice(&at.to_array());
+                if let Some(along) = along {
+                    words[normal..normal + 3].copy_from_slice(&along.to_array());
+                }
+            });
         // Normals transform by the inverse of the scale, so here by the scale. In a mirror particles go round triangles the other way
         // than vertices do, and their normals are on the other side.
         if !drawn.is_scaled_evenly() {

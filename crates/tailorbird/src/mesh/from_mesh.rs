@@ -1,52 +1,39 @@
-//! Makes a cloth of meshes that are there already.
+//! A cloth that is made of meshes that are there already.
 
-use std::collections::HashMap;
-
-use bevy_camera::{primitives::Aabb, visibility::NoAutoAabb};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
-use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, skinning::SkinnedMesh};
 use bevy_reflect::prelude::*;
-use tailorbird_cloth::{
-    cloth::{Cloth, ClothShape},
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
-    pins::{ClothPin, ClothPins, PinSelection},
-    topology::repair::Repaired,
-    weights::ClothWeights,
-};
-use tracing::warn;
+use tailorbird_cloth::{cloth::Cloth, error::ClothStatus};
 
-use super::{
-    ClothMeshOf, MeshParts, MeshPins,
-    changes::Changes,
-    parts::{Finder, Found, MeshSource, append},
-};
+use super::ClothMeshPins;
 
-/// Makes a cloth of the entity's `Mesh3d` or, where it has none, of all meshes below it, as soon as they are loaded: of a glTF
-/// scene, say. The [guide](super::garments) shows it.
+/// Makes a cloth of the entity's `Mesh3d` or, if it has none, of all meshes below it, as soon as they are loaded: of a glTF scene, say. The
+/// [guide](super::garments) shows it.
 ///
 /// The entity gets a [`Cloth`] of all triangles. Each mesh is replaced by a copy that the cloth moves, with the same UVs, colours,
-/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are
-/// kept in the main world, and may be compressed. Where the entities below are at that time counts, not where they are moved later.
+/// materials and all other attributes; the assets stay as they were, others may share them. They must be triangle lists that are kept in
+/// the main world, and may be compressed. The places of the entities below at that time count, not later ones.
 ///
-/// What moves the mesh by other means stays behind: of a skin and of morph targets the copy has nothing, and `SkinnedMesh` is taken off
-/// its entity, else each vertex would be moved twice. The log says so.
+/// Other means of moving the mesh are lost: the copy has neither a skin nor morph targets, and `SkinnedMesh` is taken off its entity,
+/// because each vertex would be moved twice. The log says so.
 ///
-/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made
-/// again, flat as the mesh is. Material, shading and pins that are given by place stay; pins that players made, and others given by
-/// index, go with the particles that they named. What is wrong with the assets is told by [`ClothStatus`], what
-/// was found in the triangles by [`Topology::report`](tailorbird_cloth::topology::Topology::report).
+/// Change it, remove the `Cloth`, replace the `Mesh3d` or the scene, or change an asset that it was made of, and the cloth is made again,
+/// flat as the mesh is. Material, shading and pins by place stay; pins that players made, and other pins by index, go with the particles
+/// that they named. Errors in the assets are told by [`ClothStatus`], findings in the triangles by
+/// [`Topology::report`](tailorbird_cloth::topology::Topology::report).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Default)]
 #[require(ClothStatus)]
 pub struct ClothFromMesh {
     /// Vertices no further apart than this \[m\] become one particle, of different meshes as well.
     pub weld_distance: f32,
-    /// Which vertices are pinned; a pin beside those of [`ClothPins`]. What is painted is kept in [`ClothWeights`].
-    pub pins: MeshPins,
-    /// Which of the meshes below the entity it is made of.
-    pub parts: MeshParts,
-    /// Whether what [`Self::pins`] reads from the vertices, their colours say, is drawn as well. Paint is data: colours that name pins
+    /// Vertices that are pinned; one pin beside those of [`ClothPins`](tailorbird_cloth::pins::ClothPins). Painted weights are kept in
+    /// [`ClothWeights`](tailorbird_cloth::weights::ClothWeights).
+    pub pins: ClothMeshPins,
+    /// Meshes below the entity that become the cloth.
+    pub parts: ClothMeshParts,
+    /// Directions of its warp and weft.
+    pub threads: ClothMeshThreads,
+    /// True if the attribute that [`Self::pins`] reads, vertex colours say, is drawn as well. Paint is data: colours that name pins
     /// would tint the cloth.
     pub draw_paint: bool,
 }
@@ -56,8 +43,9 @@ impl Default for ClothFromMesh {
     fn default() -> Self {
         Self {
             weld_distance: Cloth::WELD_DISTANCE,
-            pins: MeshPins::None,
-            parts: MeshParts::All,
+            pins: ClothMeshPins::None,
+            parts: ClothMeshParts::All,
+            threads: ClothMeshThreads::Uvs,
             draw_paint: false,
         }
     }
@@ -65,14 +53,20 @@ impl Default for ClothFromMesh {
 
 impl ClothFromMesh {
     /// With these pins.
-    pub fn with_pins(mut self, pins: MeshPins) -> Self {
+    pub fn with_pins(mut self, pins: ClothMeshPins) -> Self {
         self.pins = pins;
         self
     }
 
     /// Of the meshes with, or below entities with, one of these names.
     pub fn with_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.parts = MeshParts::Named(names.into_iter().map(Into::into).collect());
+        self.parts = ClothMeshParts::Named(names.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// With warp and weft along these.
+    pub fn with_threads(mut self, threads: ClothMeshThreads) -> Self {
+        self.threads = threads;
         self
     }
 
@@ -83,278 +77,25 @@ impl ClothFromMesh {
     }
 }
 
-/// The meshes that a cloth was made of.
-#[derive(Component, Clone, Debug)]
-pub(super) struct ClothMeshSource {
-    pub parts: Vec<MeshSource>,
-    weld_distance: f32,
-    /// How many cloths had been made when this one was: it tells this one from those of the same shape.
-    pub made: u64,
-    /// Their attributes that are not drawn.
-    pub left_out: Option<MeshVertexAttribute>,
-    /// The pin that they name.
-    pin: Option<ClothPin>,
+/// Directions of the warp and weft of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum ClothMeshThreads {
+    /// The warp where u of the first texture coordinates is constant, the weft where v is: as in the pattern of a garment. In triangles
+    /// without texture coordinates along the edges.
+    #[default]
+    Uvs,
+    /// Along the edges that are no diagonals, for meshes whose texture coordinates say nothing about the fabric: packed charts, say.
+    Edges,
 }
 
-/// The skin that a mesh had before it became cloth.
-#[derive(Component, Clone, Debug)]
-pub(super) struct SkinSetAside(SkinnedMesh);
-
-/// Makes cloths of meshes that are there, and makes them anew when those are others.
-pub(super) fn cloth_from_mesh(
-    mut entities: Query<(
-        Entity,
-        Ref<ClothFromMesh>,
-        Option<&ClothPins>,
-        Option<&ClothMeshSource>,
-        Has<Cloth>,
-        &mut ClothStatus,
-    )>,
-    mut changes: Changes,
-    mut pending: Local<HashMap<Entity, Waiting>>,
-    mut count: Local<u64>,
-    finder: Finder,
-    parts: Query<(Option<&ClothMeshOf>, Option<&SkinSetAside>, Option<&Mesh3d>)>,
-    skins: Query<&SkinnedMesh>,
-    mut commands: Commands,
-    parallel_commands: ParallelCommands,
-) {
-    let happened = changes.read();
-    for maker in happened.makers {
-        pending.entry(maker).or_default().failed = false;
-    }
-    for (entity, from_mesh, pins, source, is_cloth, mut status) in &mut entities {
-        let other_assets = source.is_some_and(|source| {
-            let mut parts = source.parts.iter();
-            parts.any(|part| happened.assets.contains(&part.mesh.id()))
-        });
-        let waited = pending.remove(&entity);
-        let before = waited.unwrap_or_default();
-        let changed = from_mesh.is_changed() || other_assets;
-        let other_assets = other_assets || before.other_assets;
-        let asked = !is_cloth || changed || other_assets || before.asked;
-        // A cloth that was not made here stays what it is.
-        if is_cloth && source.is_none() || !asked && waited.is_none() {
-            continue;
-        }
-        let mut waits = Waiting {
-            asked,
-            other_assets,
-            failed: false,
-        };
-        if before.failed && !changed && happened.assets.is_empty() {
-            pending.insert(entity, before);
-            continue;
-        }
-        let mut errors = Vec::new();
-        match make(entity, &from_mesh, &finder, &mut errors) {
-            // What is still being loaded is waited for; meanwhile the cloth stays what it was.
-            Ok(None) => {
-                pending.insert(entity, waits);
-            }
-            Ok(Some(mut made))
-                if asked || source.is_none_or(|old| !old.is_part_of(&made.source)) =>
-            {
-                *count += 1;
-                made.source.made = *count;
-                let mut pins = pins.cloned().unwrap_or_default();
-                if let Some(old) = source {
-                    pins.pins.retain(|pin| Some(pin) != old.pin.as_ref());
-                    if other_assets || !old.has_same_particles(&made.source) {
-                        pins.pins.retain(ClothPin::is_by_place);
-                    }
-                    give_back(old, &made.source, &parts, &mut commands);
-                }
-                pins.pins.extend(made.source.pin.clone());
-                set_skins_aside(entity, &made.source, &finder, &skins, &mut commands);
-                let mut entity = commands.entity(entity);
-                entity.insert((made.cloth, made.source, pins));
-                match made.weights {
-                    Some(weights) => entity.insert(weights),
-                    None => entity.remove::<ClothWeights>(),
-                };
-            }
-            Ok(Some(_)) => {}
-            Err(error) => {
-                // What is wrong may be mended in an asset that this cloth was not made of.
-                if is_cloth {
-                    waits.failed = true;
-                    pending.insert(entity, waits);
-                }
-                errors.push(error);
-            }
-        }
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &parallel_commands,
-            ErrorSource::Mesh,
-            errors,
-        );
-    }
-    pending.retain(|entity, _| entities.contains(*entity));
-}
-
-/// Why a cloth that waits for its meshes is made.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Waiting {
-    /// Whether it is made whatever is found.
-    asked: bool,
-    /// Whether meshes that it was made of are not what they were.
-    other_assets: bool,
-    /// Whether what was found was wrong: it is looked at again when a mesh asset, or what it is made of, changes.
-    failed: bool,
-}
-
-impl ClothMeshSource {
-    /// Whether all of its meshes are still there. Others that come to lie beside them are no reason to make the cloth anew.
-    fn is_part_of(&self, other: &Self) -> bool {
-        let mut all = self.parts.iter();
-        all.all(|part| other.parts.iter().any(|other| part.is_same(other)))
-    }
-
-    /// Whether a cloth of these meshes has the particles that one of those has.
-    fn has_same_particles(&self, other: &Self) -> bool {
-        let mut pairs = self.parts.iter().zip(&other.parts);
-        self.weld_distance == other.weld_distance
-            && self.parts.len() == other.parts.len()
-            && pairs.all(|(a, b)| a.is_same(b))
-    }
-}
-
-/// Takes the skins off the meshes that become cloth, and tells what of them does not move it.
-fn set_skins_aside(
-    cloth: Entity,
-    source: &ClothMeshSource,
-    finder: &Finder,
-    skins: &Query<&SkinnedMesh>,
-    commands: &mut Commands,
-) {
-    for part in &source.parts {
-        let morphs = finder
-            .mesh(part)
-            .is_some_and(|mesh| matches!(mesh.try_has_morph_targets(), Ok(true)));
-        let skin = skins.get(part.entity).ok();
-        if let Some(skin) = skin {
-            commands
-                .entity(part.entity)
-                .insert(SkinSetAside(skin.clone()))
-                .remove::<SkinnedMesh>();
-        }
-        let ignored = match (skin, morphs) {
-            (Some(skin), true) => format!(
-                "its skin ({} joints) and its morph targets",
-                skin.joints.len()
-            ),
-            (Some(skin), false) => format!("its skin ({} joints)", skin.joints.len()),
-            (None, true) => "its morph targets".to_owned(),
-            (None, false) => continue,
-        };
-        warn!(
-            "{cloth}: the mesh of {} becomes cloth, so {ignored} no longer move it; hold it with ClothAttachment, or give it \
-             ClothMotionTargets",
-            part.entity
-        );
-    }
-}
-
-/// What a cloth is made of.
-struct Made {
-    cloth: Cloth,
-    source: ClothMeshSource,
-    weights: Option<ClothWeights>,
-}
-
-/// Makes the cloth; nothing while assets are loading. Pins that are wrong are left out and reported in `errors`.
-fn make(
-    entity: Entity,
-    from_mesh: &ClothFromMesh,
-    finder: &Finder,
-    errors: &mut Vec<ClothErrorKind>,
-) -> Result<Option<Made>, ClothErrorKind> {
-    let Found::Meshes(parts) = finder.find(entity, &from_mesh.parts)? else {
-        return Ok(None);
-    };
-    let (mut positions, mut indices) = (Vec::new(), Vec::new());
-    let mut meshes = Vec::with_capacity(parts.len());
-    for part in &parts {
-        let Some(mesh) = finder.mesh(part) else {
-            return Ok(None);
-        };
-        append(mesh, part.to_cloth, &mut positions, &mut indices)?;
-        meshes.push(mesh);
-    }
-    let held = match held(from_mesh, &meshes, &positions, &indices) {
-        Ok(held) => held,
-        Err(error) => {
-            errors.push(error);
-            None
-        }
-    };
-    let pin = held.as_ref().map(|(_, pin)| pin.clone());
-    let painted = from_mesh.pins.are_painted();
-    let weights = held.filter(|_| painted).map(|(weights, _)| weights);
-    let shape = ClothShape::Mesh {
-        positions,
-        indices,
-        weld_distance: from_mesh.weld_distance,
-    };
-    Ok(Some(Made {
-        cloth: Cloth { shape },
-        source: ClothMeshSource {
-            parts,
-            weld_distance: from_mesh.weld_distance,
-            made: 0,
-            left_out: from_mesh.pins.paint().filter(|_| !from_mesh.draw_paint),
-            pin,
-        },
-        weights,
-    }))
-}
-
-/// The weights of the particles, and the pin of those above the threshold.
-fn held(
-    from_mesh: &ClothFromMesh,
-    meshes: &[&Mesh],
-    positions: &[Vec3],
-    indices: &[u32],
-) -> Result<Option<(ClothWeights, ClothPin)>, ClothErrorKind> {
-    if matches!(from_mesh.pins, MeshPins::None) {
-        return Ok(None);
-    }
-    let threshold = from_mesh.pins.threshold()?;
-    let weights = from_mesh.pins.weights(meshes, positions)?;
-    let repaired = Repaired::new(positions, indices, from_mesh.weld_distance, Vec3::ONE);
-    let weights = ClothWeights {
-        weights: repaired.weights(&weights),
-    };
-    let particles = weights.above(threshold).collect();
-    let pin = ClothPin::new(PinSelection::Particles(particles));
-    Ok(Some((weights, pin)))
-}
-
-/// Gives meshes that are no part of the cloth any more what they were, but for what others have given them since.
-fn give_back(
-    old: &ClothMeshSource,
-    new: &ClothMeshSource,
-    parts: &Query<(Option<&ClothMeshOf>, Option<&SkinSetAside>, Option<&Mesh3d>)>,
-    commands: &mut Commands,
-) {
-    for part in &old.parts {
-        let stays = new.parts.iter().any(|other| other.entity == part.entity);
-        let Ok((of, skin, shown)) = parts.get(part.entity) else {
-            continue;
-        };
-        if stays {
-            continue;
-        }
-        let mut entity = commands.entity(part.entity);
-        if matches!((of, shown), (Some(of), Some(shown)) if of.built == shown.0) {
-            entity.insert(Mesh3d(part.mesh.clone()));
-        }
-        entity.remove::<(ClothMeshOf, SkinSetAside, NoAutoAabb, Aabb)>();
-        if let Some(SkinSetAside(skin)) = skin {
-            entity.insert(skin.clone());
-        }
-    }
+/// The meshes below an entity that become its cloth.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[non_exhaustive]
+pub enum ClothMeshParts {
+    /// All but those below an entity with a `Cloth` or [`ClothFromMesh`] of its own.
+    #[default]
+    All,
+    /// Of these those that have, or lie below an entity that has, one of these [`Name`]s: in a glTF scene, of nodes.
+    Named(Vec<String>),
 }

@@ -18,7 +18,7 @@
 //!     commands.spawn((
 //!         Mesh3d(assets.load("curtain.glb#Mesh0/Primitive0")),
 //!         MeshMaterial3d(material.0.clone()),
-//!         ClothFromMesh::default().with_pins(MeshPins::matching(|p| p.y > 1.9)),
+//!         ClothFromMesh::default().with_pins(ClothMeshPins::matching(|p| p.y > 1.9)),
 //!         ClothMaterial::silk(),
 //!     ));
 //! }
@@ -44,19 +44,19 @@
 //!         WorldAssetRoot(assets.load(scene)),
 //!         ClothFromMesh::default()
 //!             .with_names(["skirt"])
-//!             .with_pins(MeshPins::attribute()),
+//!             .with_pins(ClothMeshPins::attribute()),
 //!     ));
 //! }
 //! ```
 //!
 //! # Pins that are painted
 //!
-//! | [`MeshPins`] | the pinned vertices |
+//! | [`ClothMeshPins`] | the pinned vertices |
 //! | --- | --- |
-//! | [`color`](MeshPins::color) | those whose vertex colour (glTF's `COLOR_0`) is above 0.5 in a channel |
-//! | [`attribute`](MeshPins::attribute) | those whose `_CLOTH_PIN` is above 0.5 |
-//! | [`matching`](MeshPins::matching) | those whose places match |
-//! | [`vertices`](MeshPins::vertices) | those with these indices |
+//! | [`color`](ClothMeshPins::color) | those whose vertex colour (glTF's `COLOR_0`) is above 0.5 in a channel |
+//! | [`attribute`](ClothMeshPins::attribute) | those whose `_CLOTH_PIN` is above 0.5 |
+//! | [`matching`](ClothMeshPins::matching) | those whose places match |
+//! | [`vertices`](ClothMeshPins::vertices) | those with these indices |
 //!
 //! A particle is pinned where any of its vertices is. What is painted stays readable for each particle in
 //! [`ClothWeights`](tailorbird_cloth::weights::ClothWeights). Bevy reads an attribute that it does not know where it is told so, under
@@ -82,7 +82,7 @@
 //!
 //! Meshes are seldom made for simulation. What can be repaired is, and is told in
 //! [`Topology::report`](tailorbird_cloth::topology::Topology::report): how often, where first, and in the log once;
-//! [`MeshReport`](tailorbird_cloth::topology::report::MeshReport) lists what becomes of each finding. What cannot (no triangle with
+//! [`ClothMeshReport`](tailorbird_cloth::topology::report::ClothMeshReport) lists what becomes of each finding. What cannot (no triangle with
 //! an area, indices out of range, places that are not finite or farther than 1,000 km from the origin, a mesh that is no triangle
 //! list, an asset that does not load) is a [`ClothErrorKind`](tailorbird_cloth::error::ClothErrorKind) in
 //! [`ClothStatus`](tailorbird_cloth::error::ClothStatus).
@@ -108,4 +108,4 @@
 //! with its own UVs, and their material stays as it is. Other materials become two-sided.
 
 #[cfg(doc)]
-use super::{ClothFromMesh, MeshPins};
+use super::{ClothFromMesh, ClothMeshPins};

@@ -14,7 +14,7 @@ pub struct Interleaved<'a> {
     pub words: &'a mut [f32],
     /// Numbers of a vertex.
     pub stride: usize,
-    /// Where the attribute starts in a vertex; there are three numbers from there on.
+    /// Start of the attribute in a vertex; there are three numbers from there on.
     pub offset: usize,
 }
 
@@ -27,7 +27,7 @@ pub struct SheetVertices<'a> {
     pub stride: usize,
     /// Vertices of a row.
     pub columns: usize,
-    /// Where the position, the normal and the tangent start in a vertex. The tangent has four numbers.
+    /// Starts of the position, the normal and the tangent in a vertex. The tangent has four numbers.
     pub places: [usize; 3],
     /// The last number of the tangents.
     pub handedness: f32,
@@ -40,13 +40,13 @@ pub struct Between<'a> {
     pub ends: [&'a Points; 2],
     /// The part of the way, 0 to 1.
     pub fraction: f32,
-    /// What is added.
+    /// Offsets that are added.
     pub offsets: Option<&'a Points>,
-    /// What is done to the sum.
+    /// Operation on the sum.
     pub last: Last,
 }
 
-/// What is done to a vector before it is written.
+/// Operation on a vector before it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Last {
     /// Each coordinate by its factor.

@@ -9,7 +9,7 @@ use super::interleave::{
 };
 use crate::drawn::ClothDrawnHolds;
 
-/// Which particle, or normal, each vertex follows; in storage order.
+/// Particle, or normal, that each vertex follows; in storage order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VertexOrder<'a> {
     /// The first vertex follows this one, the second the next, and so on.

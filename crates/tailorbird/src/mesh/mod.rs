@@ -1,8 +1,11 @@
 //! From particles to the picture: builds a mesh for each cloth and writes it once per frame.
 
+mod binding;
 mod build;
 mod changes;
+mod cloth_mesh;
 mod collider;
+mod drawn;
 mod follow;
 mod from_mesh;
 pub mod garments;
@@ -10,6 +13,7 @@ mod interleave;
 #[cfg(test)]
 mod interleave_tests;
 mod interleaved;
+mod make;
 mod packed;
 mod parts;
 mod pins;
@@ -23,14 +27,14 @@ mod tangents_wanted;
 mod vertices;
 mod write;
 
+pub use binding::ClothVertexBinding;
 #[cfg(feature = "motion_vectors")]
 pub(crate) use build::make_materials_two_sided;
-pub use build::{ClothMesh, ClothMeshOf, ClothMeshPart};
-pub use collider::ColliderFromMesh;
-pub use from_mesh::ClothFromMesh;
-pub use parts::MeshParts;
-pub use pins::{ATTRIBUTE_CLOTH_PIN, ColorChannel, MeshPins};
-pub use previous::ATTRIBUTE_PREVIOUS_POSITION;
+pub use cloth_mesh::{ClothMesh, ClothMeshOf, ClothMeshPart};
+pub use collider::ClothColliderFromMesh;
+pub use from_mesh::{ClothFromMesh, ClothMeshParts, ClothMeshThreads};
+pub use packed::ATTRIBUTE_PREVIOUS_POSITION;
+pub use pins::{ATTRIBUTE_CLOTH_PIN, ClothColorChannel, ClothMeshPins};
 
 use bevy_app::{App, Plugin, PostUpdate, PreUpdate};
 use bevy_asset::{AssetEventSystems, Assets};
@@ -42,8 +46,8 @@ use bevy_pbr::StandardMaterial;
 use bevy_reflect::prelude::*;
 use bevy_transform::TransformSystems;
 
-/// What happens to meshes of cloths that no camera and no light with shadows sees: those whose entity is not seen, whatever other
-/// entities have the same mesh. The cloths are simulated all the same, but where
+/// Treatment of cloth meshes that are visible to no camera and no light with shadows. Visibility is that of the cloth's own mesh entities,
+/// whatever other entities have the same mesh. The cloths are simulated all the same, unless
 /// [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
@@ -61,24 +65,22 @@ pub enum ClothUnseen {
 /// Makes the `StandardMaterial` of cloths two-sided as well: a cloth has a back.
 #[derive(Default)]
 pub struct ClothMeshPlugin {
-    /// What [`ClothMeshSettings`] starts with.
+    /// Initial [`ClothMeshSettings`].
     pub settings: ClothMeshSettings,
 }
 
-/// How meshes are written.
+/// Settings of the writing of meshes.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothMeshSettings {
     /// Draws cloth between the last two steps, where the current frame is. For a simulation in a schedule with a fixed
     /// time step; without it motion would stutter wherever steps and frames do not coincide.
     pub interpolate: bool,
-    /// Where the vertices go.
+    /// Destination of the vertices.
     pub write: ClothMeshWrite,
-    /// What happens to meshes that no camera and no light with shadows sees.
+    /// Treatment of meshes that are visible to no camera and no light with shadows.
     pub unseen: ClothUnseen,
-    /// Whether vertices carry their place in the frame before, as
-    /// [`ATTRIBUTE_PREVIOUS_POSITION`].
-    /// `ClothMotionVectorsPlugin` sets it.
+    /// True if vertices carry their position in the frame before, as [`ATTRIBUTE_PREVIOUS_POSITION`]. `ClothMotionVectorsPlugin` sets it.
     pub motion_vectors: bool,
 }
 
@@ -93,13 +95,13 @@ impl Default for ClothMeshSettings {
     }
 }
 
-/// Where the vertices of cloths go in each frame.
+/// Destination of the vertices of cloths in each frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum ClothMeshWrite {
-    /// To where the renderer keeps them. The mesh asset has the cloth as it was when its mesh was built.
+    /// The renderer's own buffers. The mesh asset has the cloth as it was when its mesh was built.
     ///
-    /// Where there is no renderer, or it keeps a mesh in another form, the asset is written.
+    /// Without a renderer, or if it keeps a mesh in another form, the asset is written.
     #[default]
     Slab,
     /// To the mesh asset, for those who read it. It costs several times as much.
@@ -126,7 +128,7 @@ impl Plugin for ClothMeshPlugin {
             .add_observer(changes::note_ready)
             .add_systems(
                 PreUpdate,
-                from_mesh::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),
+                make::cloth_from_mesh.run_if(resource_exists::<Assets<Mesh>>),
             )
             .add_systems(
                 PostUpdate,

@@ -1,8 +1,13 @@
 //! The vertices of a mesh as the renderer has them: all attributes of a vertex side by side.
 
-use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
+use bevy_mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues, VertexFormat};
 
-use super::ATTRIBUTE_PREVIOUS_POSITION;
+/// Position of a vertex in the frame before, in the space of its mesh \[m\].
+pub const ATTRIBUTE_PREVIOUS_POSITION: MeshVertexAttribute = MeshVertexAttribute::new(
+    "Vertex_Cloth_Previous_Position",
+    0x7a11_0b1d_c107_0002,
+    VertexFormat::Float32x3,
+);
 
 /// Numbers of a position and of a normal, and of a tangent.
 const VECTOR: usize = 3;
@@ -14,26 +19,26 @@ pub(super) struct Packed {
     pub words: Vec<f32>,
     /// Numbers of a vertex.
     pub stride: usize,
-    /// Where the position, the normal and the tangent, if there is one, start in a vertex.
+    /// Starts of the position, the normal and the tangent, if there is one, in a vertex.
     pub position: usize,
     pub normal: usize,
     pub tangent: Option<usize>,
     /// The positions of the frame before, where the mesh has a place for them.
     previous: Option<Previous>,
-    /// Whether these are all attributes, in the order that the renderer has them in.
+    /// True if these are all attributes, in the order of the renderer.
     pub complete: bool,
     /// Rises when the other attributes change.
     pub version: u32,
     attributes: Vec<MeshVertexAttribute>,
 }
 
-/// Where vertices were drawn.
+/// Positions at which vertices were drawn.
 struct Previous {
-    /// Where that position starts in a vertex.
+    /// Start of that position in a vertex.
     place: usize,
     /// None where they were not drawn in the frame before.
     positions: Vec<f32>,
-    /// Whether any was elsewhere.
+    /// True if any was elsewhere.
     moved: bool,
 }
 
@@ -99,7 +104,7 @@ impl Packed {
         })
     }
 
-    /// Whether a mesh still has these attributes, and as many vertices.
+    /// Returns whether a mesh still has these attributes, and as many vertices.
     pub fn is_of(&self, mesh: &Mesh) -> bool {
         let same = attributes(mesh).map(|(attribute, values)| (attribute.id, values.len()));
         let count = self.words.len() / self.stride;
@@ -130,7 +135,7 @@ impl Packed {
         }
     }
 
-    /// Whether vertices were elsewhere in the frame before, which is to be taken back when they stay.
+    /// Returns whether vertices were elsewhere in the frame before, which is to be taken back when they stay.
     pub fn moved(&self) -> bool {
         self.previous
             .as_ref()

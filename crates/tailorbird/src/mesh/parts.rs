@@ -4,31 +4,19 @@ use bevy_asset::{AssetServer, Assets, Handle, LoadState, UntypedAssetId};
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_math::{Affine3A, Vec3};
 use bevy_mesh::{Mesh, Mesh3d, PrimitiveTopology};
-use bevy_reflect::prelude::*;
 use bevy_scene::ScenePatchInstance;
 use bevy_transform::prelude::Transform;
 use bevy_world_serialization::WorldAssetRoot;
 use tailorbird_cloth::{
     cloth::Cloth,
-    error::{ClothErrorKind, ShapeError},
+    error::{ClothErrorKind, ClothShapeError},
 };
 
 use super::{
-    ClothFromMesh, ClothMeshOf,
+    ClothFromMesh, ClothMeshOf, ClothMeshParts,
     changes::SceneComplete,
     plain::{self, unusable},
 };
-
-/// Which of the meshes below an entity become its cloth.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Reflect)]
-#[non_exhaustive]
-pub enum MeshParts {
-    /// All but those below an entity with a `Cloth` or [`ClothFromMesh`] of its own.
-    #[default]
-    All,
-    /// Of these those that have, or lie below an entity that has, one of these [`Name`]s: in a glTF scene, of nodes.
-    Named(Vec<String>),
-}
 
 /// A mesh that becomes a part of a cloth.
 #[derive(Clone, Debug)]
@@ -40,20 +28,20 @@ pub(super) struct MeshSource {
 }
 
 impl MeshSource {
-    /// Whether this is the same mesh of the same entity.
+    /// Returns whether this is the same mesh of the same entity.
     pub fn is_same(&self, other: &Self) -> bool {
         self.entity == other.entity && self.mesh == other.mesh
     }
 }
 
-/// What came of the search.
+/// Result of the search.
 pub(super) enum Found {
     /// Something is still loading, or is not there yet.
     Nothing,
     Meshes(Vec<MeshSource>),
 }
 
-/// What is needed to find meshes.
+/// Parameters of a search for meshes.
 #[derive(SystemParam)]
 pub(super) struct Finder<'w, 's> {
     nodes: Query<
@@ -81,10 +69,14 @@ impl Finder<'_, '_> {
     ///
     /// # Errors
     /// When an asset did not load, or there are meshes below but none that is meant.
-    pub fn find(&self, entity: Entity, parts: &MeshParts) -> Result<Found, ClothErrorKind> {
+    pub fn find(&self, entity: Entity, parts: &ClothMeshParts) -> Result<Found, ClothErrorKind> {
         let (mut found, mut other_names, mut waits, mut scenes) =
             (Vec::new(), Vec::new(), false, 0);
-        let mut stack = vec![(entity, Affine3A::IDENTITY, matches!(parts, MeshParts::All))];
+        let mut stack = vec![(
+            entity,
+            Affine3A::IDENTITY,
+            matches!(parts, ClothMeshParts::All),
+        )];
         while let Some((node, to_cloth, mut meant)) = stack.pop() {
             let Ok((transform, name, mesh, part, scene, patch, complete, from_mesh, cloth)) =
                 self.nodes.get(node)
@@ -98,7 +90,7 @@ impl Finder<'_, '_> {
                 }
                 to_cloth *= transform.copied().unwrap_or_default().compute_affine();
             }
-            if let (MeshParts::Named(names), Some(name)) = (parts, name) {
+            if let (ClothMeshParts::Named(names), Some(name)) = (parts, name) {
                 meant |= names.iter().any(|wanted| wanted == name.as_str());
             }
             let children = self.children.get(node).ok();
@@ -191,7 +183,7 @@ fn source_of(mesh: &Mesh3d, part: Option<&ClothMeshOf>) -> Handle<Mesh> {
 /// Appends the triangles of a mesh to those of the cloth.
 ///
 /// # Errors
-/// What is wrong with the mesh.
+/// The error in the mesh.
 pub(super) fn append(
     mesh: &Mesh,
     to_cloth: Option<Affine3A>,
@@ -210,12 +202,12 @@ pub(super) fn append(
     }
     let own = &mut indices[start..];
     if !own.len().is_multiple_of(3) {
-        return Err(ShapeError::IndexCount { value: own.len() }.into());
+        return Err(ClothShapeError::IndexCount { value: own.len() }.into());
     }
     let vertices = places.len();
     for (at, index) in own.iter_mut().enumerate() {
         if *index as usize >= vertices {
-            return Err(ShapeError::IndexOutOfRange {
+            return Err(ClothShapeError::IndexOutOfRange {
                 at,
                 value: *index,
                 vertices,

@@ -9,47 +9,46 @@ use tailorbird_cloth::error::ClothErrorKind;
 
 use super::plain;
 
-/// How firmly each vertex is held: 0 is free, 1 is pinned. The attribute for `_CLOTH_PIN` of a glTF file; see the
-/// [guide](super::garments).
+/// Weight of each vertex: 0 is free, 1 is pinned. The attribute for `_CLOTH_PIN` of a glTF file; see the [guide](super::garments).
 pub const ATTRIBUTE_CLOTH_PIN: MeshVertexAttribute = MeshVertexAttribute::new(
     "Vertex_Cloth_Pin",
     0x7a11_0b1d_c107_0001,
     VertexFormat::Float32,
 );
 
-/// Which vertices of a mesh are pinned when it becomes a cloth.
+/// Vertices of a mesh that are pinned when it becomes a cloth.
 ///
-/// A particle is pinned where any of its vertices is: both sides of a seam agree.
+/// A particle is pinned if any of its vertices is: both sides of a seam agree.
 #[derive(Clone, Default, Reflect)]
 #[reflect(opaque)]
 #[non_exhaustive]
-pub enum MeshPins {
+pub enum ClothMeshPins {
     /// None.
     #[default]
     None,
-    /// Those whose vertex colour is above a threshold.
+    /// Vertices whose colour is above a threshold.
     Color {
-        /// Which channel of the colour.
-        channel: ColorChannel,
+        /// Channel of the colour.
+        channel: ClothColorChannel,
         /// The threshold [-].
         threshold: f32,
     },
-    /// Those whose attribute is above a threshold. Of a vector the first number counts.
+    /// Vertices whose attribute is above a threshold. The first number of a vector counts.
     Attribute {
         /// The attribute, of one to four `f32`.
         attribute: MeshVertexAttribute,
         /// The threshold [-].
         threshold: f32,
     },
-    /// Those for whose places, in the space of the cloth's entity \[m\], this is true.
+    /// Vertices for whose positions, in the space of the cloth's entity \[m\], this is true.
     Where(Arc<dyn Fn(Vec3) -> bool + Send + Sync>),
-    /// Those with these indices. Of several meshes the vertices are counted through, in the order of the hierarchy.
+    /// Vertices with these indices. The vertices of several meshes are counted through, in the order of the hierarchy.
     Vertices(Vec<u32>),
 }
 
 /// A channel of a vertex colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-pub enum ColorChannel {
+pub enum ClothColorChannel {
     /// The first.
     #[default]
     Red,
@@ -61,19 +60,19 @@ pub enum ColorChannel {
     Alpha,
 }
 
-impl MeshPins {
+impl ClothMeshPins {
     /// The threshold of pins that are painted, unless another is given.
     pub const THRESHOLD: f32 = 0.5;
 
-    /// Those whose vertex colour is above [`Self::THRESHOLD`] in a channel.
-    pub fn color(channel: ColorChannel) -> Self {
+    /// Pins the vertices whose colour is above [`Self::THRESHOLD`] in a channel.
+    pub fn color(channel: ClothColorChannel) -> Self {
         Self::Color {
             channel,
             threshold: Self::THRESHOLD,
         }
     }
 
-    /// Those whose [`ATTRIBUTE_CLOTH_PIN`] is above [`Self::THRESHOLD`].
+    /// Pins the vertices whose [`ATTRIBUTE_CLOTH_PIN`] is above [`Self::THRESHOLD`].
     pub fn attribute() -> Self {
         Self::Attribute {
             attribute: ATTRIBUTE_CLOTH_PIN,
@@ -81,17 +80,17 @@ impl MeshPins {
         }
     }
 
-    /// Those for whose places, in the space of the cloth's entity \[m\], `held` is true.
+    /// Pins the vertices for whose positions, in the space of the cloth's entity \[m\], `held` is true.
     pub fn matching(held: impl Fn(Vec3) -> bool + Send + Sync + 'static) -> Self {
         Self::Where(Arc::new(held))
     }
 
-    /// Those with these indices.
+    /// Pins the vertices with these indices.
     pub fn vertices(vertices: impl IntoIterator<Item = u32>) -> Self {
         Self::Vertices(vertices.into_iter().collect())
     }
 
-    /// Whether the weights are painted on the mesh.
+    /// Returns whether the weights are painted on the mesh.
     pub(super) fn are_painted(&self) -> bool {
         matches!(self, Self::Color { .. } | Self::Attribute { .. })
     }
@@ -128,11 +127,10 @@ impl MeshPins {
         }
     }
 
-    /// The weight of each vertex of meshes that lie one after the other; `positions` are those of all vertices in the cloth's
-    /// space \[m\].
+    /// The weight of each vertex of meshes that lie one after the other; `positions` are those of all vertices in the cloth's space \[m\].
     ///
     /// # Errors
-    /// Where no mesh has what names the pins, or a vertex is not there.
+    /// An error if no mesh has the data that names the pins, or a vertex is not there.
     pub(super) fn weights(
         &self,
         meshes: &[&Mesh],
@@ -166,7 +164,7 @@ impl MeshPins {
     }
 }
 
-impl fmt::Debug for MeshPins {
+impl fmt::Debug for ClothMeshPins {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => f.write_str("None"),

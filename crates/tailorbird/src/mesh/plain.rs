@@ -20,10 +20,10 @@ pub(super) fn unusable(reason: impl Into<String>) -> ClothErrorKind {
     }
 }
 
-/// The places of the vertices, in the space of the mesh \[m\].
+/// Positions of the vertices, in the space of the mesh \[m\].
 ///
 /// # Errors
-/// Where there are none, or none that can be read.
+/// An error if there are none, or none that can be read.
 pub(super) fn positions(mesh: &Mesh) -> Result<Cow<'_, [[f32; 3]]>, ClothErrorKind> {
     match mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION) {
         Ok(Some(Values::Float32x3(places))) => Ok(Cow::Borrowed(places)),
@@ -82,10 +82,10 @@ pub(super) fn channel(values: &Values, channel: usize) -> Option<Vec<f32>> {
     }
 }
 
-/// A copy of a mesh without compression, without what a skin or morph targets need, and without these attributes.
+/// A copy of a mesh without compression, without the attributes of skins and morph targets, and without these attributes.
 ///
 /// # Errors
-/// Where there are no positions that can be read.
+/// An error if there are no positions that can be read.
 pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh, ClothErrorKind> {
     let mut copy = Mesh::new(mesh.primitive_topology(), mesh.asset_usage);
     copy.enable_raytracing = mesh.enable_raytracing;
@@ -131,6 +131,16 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
         copy.insert_indices(indices.clone());
     }
     Ok(copy)
+}
+
+/// The texture coordinates of the vertices; of a mesh without, not a number.
+pub(super) fn texture_coordinates(mesh: &Mesh) -> Vec<Vec2> {
+    let values = mesh.try_attribute_option(UV_SETS[0]).ok().flatten();
+    let found = values.and_then(|values| uvs(mesh, values, 0));
+    found.map_or_else(
+        || vec![Vec2::NAN; mesh.count_vertices()],
+        |uvs| uvs.into_iter().map(Vec2::from).collect(),
+    )
 }
 
 /// Bevy's sets of texture coordinates.

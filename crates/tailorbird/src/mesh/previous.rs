@@ -1,17 +1,10 @@
-//! Where vertices were in the frame before.
+//! Positions of vertices in the frame before.
 
 use bevy_asset::Assets;
 use bevy_ecs::prelude::*;
-use bevy_mesh::{Mesh, MeshVertexAttribute, VertexFormat};
+use bevy_mesh::Mesh;
 
-use super::{ClothMesh, ClothMeshSettings};
-
-/// Where a vertex was in the frame before, in the space of its mesh \[m\].
-pub const ATTRIBUTE_PREVIOUS_POSITION: MeshVertexAttribute = MeshVertexAttribute::new(
-    "Vertex_Cloth_Previous_Position",
-    0x7a11_0b1d_c107_0002,
-    VertexFormat::Float32x3,
-);
+use super::{ATTRIBUTE_PREVIOUS_POSITION, ClothMesh, ClothMeshSettings};
 
 /// Gives the meshes of cloths a place for the positions of the frame before, or takes it away.
 pub(super) fn add_previous_positions(

@@ -33,7 +33,7 @@
 //! | [`ClothUnseen::Write`](super::ClothUnseen::Write) | it is | as if it were seen |
 //! | [`ClothSleep::unseen`](tailorbird_cloth::sleep::ClothSleep::unseen) | what no camera and no light with shadows sees is not simulated either | nothing; it saves both |
 //! | [`ClothShading`](tailorbird_cloth::normals::ClothShading) | smooth, or flat: each triangle its own light | flat has three vertices for each triangle, six for each particle |
-//! | [`ClothLook`](crate::fabric::ClothLook), [`Fabric`](crate::fabric::Fabric) | textures of a fabric, dyed | one material for all cloths that look alike; up to 17 MB of graphics memory for a fabric: three textures of 1024² and their smaller copies |
+//! | [`ClothLook`](crate::fabric::ClothLook), [`ClothFabric`](crate::fabric::ClothFabric) | textures of a fabric, dyed | one material for all cloths that look alike; up to 17 MB of graphics memory for a fabric: three textures of 1024² and their smaller copies |
 //! | [`ClothMotionVectorsPlugin`](crate::motion_vectors::ClothMotionVectorsPlugin) | motion vectors of the vertices | 12 bytes for each vertex, and a batch of their own |
 //! | `Msaa` of the camera | smooth edges; lace has holes with smooth edges only with it | Bevy's |
 //! | `NotShadowCaster` on the cloth | no shadow | saves drawing it once for each light |
@@ -45,7 +45,7 @@
 //! # Light
 //!
 //! - **Backs**: `StandardMaterial`s of cloths are made two-sided, so that normals of backs point to the viewer. A material that
-//!   lets light through (`diffuse_transmission`, as those of [`Fabric`](crate::fabric::Fabric) have) shows the light behind a thin curtain; the
+//!   lets light through (`diffuse_transmission`, as those of [`ClothFabric`](crate::fabric::ClothFabric) have) shows the light behind a thin curtain; the
 //!   cloth needs Bevy's `TransmittedShadowReceiver` where that light has shadows.
 //! - **Normals** are those of the triangles around a particle, weighted by area; vertices on both sides of a seam of UVs share them.
 //! - **Tangents** follow the threads along u. They turn no faster than those, so that normal maps do not swim.

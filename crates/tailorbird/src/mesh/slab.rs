@@ -23,26 +23,26 @@ use bevy_render::{
 
 use super::ClothMesh;
 
-/// How often in a row vertices must not fit their mesh before it is given up.
+/// Number of frames in a row in which vertices may not fit their mesh before it is given up.
 const PATIENCE: u32 = 3;
 
 /// The vertices of a mesh.
-pub(super) struct Vertices {
+pub(super) struct VertexUpload {
     pub words: Vec<f32>,
     /// Numbers of a vertex.
     pub stride: usize,
     pub version: u32,
 }
 
-/// What goes to the renderer, and what comes back from it. It is there where there is a renderer.
+/// Vertices that go to the renderer, and its answers. It exists if there is a renderer.
 #[derive(Resource, Default)]
 pub(super) struct VertexUploads {
     /// Vertices that changed.
-    pub fresh: HashMap<AssetId<Mesh>, Vertices>,
+    pub fresh: HashMap<AssetId<Mesh>, VertexUpload>,
     /// Meshes that are written as assets.
     pub forgotten: Vec<AssetId<Mesh>>,
     /// Vertices that are not needed any more, to be written anew.
-    pub spent: HashMap<AssetId<Mesh>, Vertices>,
+    pub spent: HashMap<AssetId<Mesh>, VertexUpload>,
     /// Meshes that cannot be written in this way.
     pub refused: HashSet<AssetId<Mesh>>,
 }
@@ -55,12 +55,12 @@ struct ShownVertices {
 }
 
 struct Shown {
-    vertices: Vertices,
-    /// Where they were written: in which buffer, from which vertex on.
+    vertices: VertexUpload,
+    /// Place where they were written: the buffer, and the first vertex.
     place: Option<(BufferId, u32)>,
-    /// Whether these vertices were held against the mesh.
+    /// True if these vertices were compared with the mesh.
     judged: bool,
-    /// How many in a row did not fit.
+    /// Number of frames in a row that did not fit.
     mismatches: u32,
 }
 
@@ -171,7 +171,7 @@ fn write_vertices(
         if shown.place == place {
             continue;
         }
-        let Vertices { words, stride, .. } = &shown.vertices;
+        let VertexUpload { words, stride, .. } = &shown.vertices;
         let size = mesh.layout.0.layout().array_stride;
         let right = size == 4 * *stride as u64
             && words.len() == *stride * mesh.vertex_count as usize

@@ -7,12 +7,11 @@ use bevy_math::{Vec2, Vec3};
 /// An edge runs along u if v changes along it by less than this part of u's change.
 const ALONG: f32 = 1e-3;
 
-/// What is needed to compute the tangents of a mesh for any positions of its vertices.
+/// Data for the tangents of a mesh, for any positions of its vertices.
 ///
-/// Within a triangle u grows along e₁ (v₂ − v₀) − e₂ (v₁ − v₀), up to the sign of the UV area, with e the edges from its
-/// first corner. A vertex gets the sum over its triangles, which is a weighted sum of the ways to its neighbours, orthogonal to its
-/// normal. Where edges run along u, as those of the rows of a sheet, they alone tell. This is continuous in the positions: normal maps
-/// do not swim.
+/// Within a triangle u grows along e₁ (v₂ − v₀) − e₂ (v₁ − v₀), up to the sign of the UV area, with e the edges from its first corner. A
+/// vertex gets the sum over its triangles, which is a weighted sum of the offsets to its neighbours, orthogonal to its normal. If edges run
+/// along u, like those of the rows of a sheet, they alone decide. This is continuous in the positions: normal maps do not swim.
 pub(super) struct Tangents {
     /// For each vertex where its neighbours start, and where the last ones end.
     starts: Vec<u32>,

@@ -10,7 +10,7 @@ use bevy_pbr::{MeshMaterial3d, StandardMaterial};
 
 use super::ClothMesh;
 
-/// Whether a material looks at tangents.
+/// Returns whether a material needs tangents.
 fn wants_tangents(material: &StandardMaterial) -> bool {
     material.normal_map_texture.is_some()
         || material.depth_map.is_some()

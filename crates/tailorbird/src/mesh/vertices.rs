@@ -5,9 +5,7 @@ use bevy_math::{UVec2, Vec2};
 use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
 use tailorbird_cloth::{cloth::ClothShape, normals::ClothShading, topology::Topology};
 
-use super::{
-    build::ClothMeshPart, follow::Follow, parts::MeshSource, plain::plain, tangents::Tangents,
-};
+use super::{ClothMeshPart, follow::Follow, parts::MeshSource, plain::plain, tangents::Tangents};
 
 /// The vertices of a mesh in the making, in the order of its source.
 pub(super) struct Vertices {
@@ -17,7 +15,7 @@ pub(super) struct Vertices {
     source: Option<Mesh>,
     /// For each vertex the vertex of the source.
     source_vertex: Vec<u32>,
-    /// Where the vertices and triangles of the source start in the cloth's shape.
+    /// Index of the source's first vertex and triangle in the cloth's shape.
     first_vertex: usize,
     first_triangle: usize,
     /// For each vertex its normal.
@@ -60,7 +58,7 @@ impl Vertices {
         }
     }
 
-    /// Those of the meshes that a shape was made of; `None` where they are not those of the shape (any more).
+    /// Vertices of the meshes that a shape was made of; `None` if they are not those of the shape (any more).
     pub fn of_meshes<'a>(
         sources: &'a [MeshSource],
         shape: &ClothShape,
@@ -106,7 +104,7 @@ impl Vertices {
         shading: ClothShading,
     ) -> (Mesh, ClothMeshPart) {
         // A grid's triangles are known to its topology alone, where vertices and particles are the same.
-        if topology.grid.is_some() {
+        if topology.is_grid() {
             self.indices = topology.triangles().iter().flatten().collect();
         }
         self.turn(topology);
@@ -118,7 +116,7 @@ impl Vertices {
         self.finish(topology)
     }
 
-    /// Which of the mesh's own triangles these are, numbered as in the shape.
+    /// Index among the mesh's own triangles of a triangle of the shape.
     fn own(&self, triangle: u32) -> Option<usize> {
         let own = (triangle as usize).checked_sub(self.first_triangle)?;
         (own < self.indices.len() / 3).then_some(own)
@@ -133,7 +131,7 @@ impl Vertices {
         }
     }
 
-    /// Which triangles are the backs of others.
+    /// Triangles that are the backs of others.
     fn back_triangles(&self, topology: &Topology) -> Vec<usize> {
         let backs = topology.copied_triangles().iter().filter(|copy| copy.back);
         backs.filter_map(|copy| self.own(copy.source)).collect()
@@ -238,7 +236,7 @@ impl Vertices {
             self.normal_of_vertex,
             self.backs,
             tangents,
-            topology.grid.map(|grid| grid.x as usize),
+            topology.grid().map(|grid| grid.x as usize),
         );
         (mesh, ClothMeshPart::new(follow))
     }

@@ -10,12 +10,12 @@ use bevy_mesh::Mesh;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::AttachedParticles,
+    attachment::ClothAttachedParticles,
     bounds::ClothBounds,
     frame::ClothFrame,
     normals::ClothNormals,
     particles::ClothParticles,
-    sleep::{ClothRest, ClothSeen},
+    sleep::{ClothSeen, ClothSleepState},
     step::ClothStep,
     topology::ClothTopology,
 };
@@ -23,13 +23,14 @@ use tracing::warn;
 
 use super::{
     ClothMesh, ClothMeshPart, ClothMeshSettings, ClothMeshWrite, ClothUnseen,
-    follow::{Drawn, PIECE, share},
+    drawn::Drawn,
+    follow::{PIECE, share},
     packed::Packed,
-    slab::{VertexUploads, Vertices},
+    slab::{VertexUpload, VertexUploads},
 };
 use crate::drawn::ClothDrawnHolds;
 
-/// Whether meshes are written as assets: then they are before their changes are told.
+/// Returns whether meshes are written as assets: then they are before their changes are told.
 pub(super) fn writes_assets(
     settings: Res<ClothMeshSettings>,
     uploads: Option<Res<VertexUploads>>,
@@ -104,12 +105,16 @@ pub(super) fn follow_cloth(
     step: Option<Res<ClothStep>>,
     mut cloths: Query<(
         &mut ClothMesh,
-        &ClothRest,
+        &ClothSleepState,
         &ClothParticles,
         &ClothNormals,
         &ClothTopology,
         &ClothFrame,
-        (&AttachedParticles, &GlobalTransform, &mut ClothDrawnHolds),
+        (
+            &ClothAttachedParticles,
+            &GlobalTransform,
+            &mut ClothDrawnHolds,
+        ),
     )>,
     places: Query<&GlobalTransform>,
     seen: Query<&ViewVisibility>,
@@ -211,7 +216,7 @@ fn moved(aabb: Aabb, by: Affine3A) -> Aabb {
 }
 
 impl ClothMesh {
-    /// Whether it is to be built anew.
+    /// Returns whether it is to be built anew.
     fn is_stale(&self, topology: &ClothTopology, normals: &ClothNormals) -> bool {
         self.revision != topology.revision || normals.shading() != self.shading
     }
@@ -282,7 +287,7 @@ pub(super) fn write_cloth_mesh(
                 });
                 let next = next.map_or_else(|| packed.words.clone(), |spent| spent.words);
                 let words = std::mem::replace(&mut packed.words, next);
-                let vertices = Vertices {
+                let vertices = VertexUpload {
                     words,
                     stride,
                     version,

@@ -50,7 +50,7 @@ pub struct ClothMotionVectorsPlugin;
 /// A `StandardMaterial` whose motion vectors are those of the vertices.
 pub type ClothMotionMaterial = ExtendedMaterial<StandardMaterial, ClothMotion>;
 
-/// What [`ClothMotionMaterial`] adds to its base.
+/// Extension of the base by [`ClothMotionMaterial`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug, Default)]
 pub struct ClothMotion {}
 

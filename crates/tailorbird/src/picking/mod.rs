@@ -17,7 +17,7 @@ use bevy_reflect::prelude::*;
 /// without.
 pub struct ClothPickingPlugin;
 
-/// Which way pointers find cloth. Change it at any time.
+/// Settings of the search for cloth under pointers. Change it at any time.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource, Default)]
 pub struct ClothPickingSettings {
@@ -39,7 +39,7 @@ pub enum ClothPickingBackend {
     Depth,
 }
 
-/// Where on a cloth a pointer is: the extra data of the `HitData` of `Pointer` events.
+/// Place of a pointer on a cloth: the extra data of the `HitData` of `Pointer` events.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;

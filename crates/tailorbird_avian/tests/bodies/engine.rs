@@ -124,7 +124,7 @@ pub fn set_damping(world: &mut World, body: Entity, rate: f32) {
     world.get_mut::<AngularDamping>(body).unwrap().0 = rate;
 }
 
-/// How deep a point in the body's axes is inside its collider \[m\].
+/// Depth of a point in the body's axes inside its collider \[m\].
 pub fn depth(world: &World, body: Entity, point: Vec3) -> f32 {
     let shape = world.get::<Collider>(body).unwrap().shape_scaled();
     if let Some(field) = shape.as_heightfield() {

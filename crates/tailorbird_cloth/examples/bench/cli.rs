@@ -9,7 +9,7 @@ use tailorbird_cloth::prelude::*;
 #[derive(Parser, Clone, Debug)]
 #[command(name = "bench", version)]
 pub struct Args {
-    /// What is measured.
+    /// Measurement.
     #[arg(value_enum)]
     pub what: What,
 
@@ -39,7 +39,7 @@ pub struct Args {
     pub json: Option<PathBuf>,
 }
 
-/// What is measured.
+/// Measurement.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
     /// A sheet that swings down from two corners.
@@ -50,9 +50,9 @@ pub enum What {
     Flags,
     /// Each kernel of the solvers by itself, on one thread; a machine without an instruction set uses the best below.
     Kernels,
-    /// What colliders of each shape cost, of a sheet of 128 × 128 unless `--size` is given.
+    /// Cost of colliders of each shape, with a sheet of 128 × 128 unless `--size` is given.
     Colliders,
-    /// What it costs that a game has systems within a substep.
+    /// Cost of a game's systems within a substep.
     Substep,
     /// All sheets: hang, drape, flags.
     All,
@@ -73,7 +73,7 @@ pub enum Isa {
     Avx512,
 }
 
-impl From<Isa> for InstructionSet {
+impl From<Isa> for ClothInstructionSet {
     fn from(isa: Isa) -> Self {
         match isa {
             Isa::Auto => Self::Auto,

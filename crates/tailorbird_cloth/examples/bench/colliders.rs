@@ -1,4 +1,4 @@
-//! What each shape costs that a sheet lies on.
+//! Cost of each shape that a sheet lies on.
 
 use std::{
     f32::consts::{FRAC_PI_2, PI, TAU},
@@ -113,7 +113,7 @@ fn shapes(size: u32) -> Vec<(&'static str, u32, Vec<Placed>)> {
     let terrain = ClothCollider::height_field(heights, 101, Vec2::splat(4.0)).ok();
     let part = |x: f32| {
         let at = Isometry3d::new(Vec3::X * x, Quat::IDENTITY);
-        (at, ColliderShape::Sphere { radius: 0.5 })
+        (at, ClothColliderShape::Sphere { radius: 0.5 })
     };
     let compound = ClothCollider::compound([part(-0.5), part(0.0), part(0.5)]).ok();
     let mut list = vec![
@@ -160,7 +160,7 @@ fn shapes(size: u32) -> Vec<(&'static str, u32, Vec<Placed>)> {
 }
 
 /// A ball of 4 `n`² triangles, about.
-fn ball(radius: f32, n: u32) -> ColliderShape {
+fn ball(radius: f32, n: u32) -> ClothColliderShape {
     let point = |i: u32, j: u32| {
         let (s, c) = (TAU * i as f32 / (2 * n) as f32).sin_cos();
         let (height, y) = (PI * j as f32 / n as f32).sin_cos();
@@ -178,8 +178,10 @@ fn ball(radius: f32, n: u32) -> ColliderShape {
             triangles.extend([[a, b, d], [a, d, c]]);
         }
     }
-    tailorbird_cloth::collider::TriMesh::new(positions, triangles)
-        .map_or(ColliderShape::Sphere { radius }, ColliderShape::TriMesh)
+    tailorbird_cloth::collider::TriMesh::new(positions, triangles).map_or(
+        ClothColliderShape::Sphere { radius },
+        ClothColliderShape::TriMesh,
+    )
 }
 
 fn app(size: u32, colliders: &[Placed]) -> (App, Entity) {
@@ -193,7 +195,7 @@ fn app(size: u32, colliders: &[Placed]) -> (App, Entity) {
     let timestep = fixed.timestep();
     app.insert_resource(fixed)
         .insert_resource(TimeUpdateStrategy::ManualDuration(timestep))
-        .insert_resource(Wind::vacuum())
+        .insert_resource(ClothWind::vacuum())
         .init_resource::<Clock>()
         .add_systems(
             ClothSubstep,

@@ -31,7 +31,7 @@ pub fn run(args: &Args) -> Vec<Record> {
     for size in args.size.map_or_else(|| vec![64, 256], |size| vec![size]) {
         let columns: Vec<Vec<KernelTime>> = sets
             .iter()
-            .map(|&isa| measure(size, InstructionSet::from(isa)))
+            .map(|&isa| measure(size, ClothInstructionSet::from(isa)))
             .collect();
         println!("{size} × {size}: ns per particle (ns per constraint)");
         print!("{:<22}", "");

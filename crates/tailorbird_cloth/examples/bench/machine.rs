@@ -1,4 +1,4 @@
-//! What the figures were taken on.
+//! Machine that the figures were taken on.
 
 use std::{fs, process::Command, thread};
 

@@ -84,7 +84,7 @@ pub fn measure(setup: &Setup, args: &Args) -> Record {
     }
 }
 
-/// How long it takes to build the topology [ms].
+/// Time to build the topology [ms].
 fn topology_ms(cloth: &Cloth) -> f64 {
     let times = (0..BUILDS).map(|_| {
         let start = WallClock::start();

@@ -22,7 +22,7 @@ pub struct Record {
     /// The largest \[-\].
     pub stretch_max: f64,
     pub substeps: u32,
-    /// Whether the solver chose the number of substeps.
+    /// True if the solver chose the number of substeps.
     pub automatic: bool,
     /// Passes in a substep.
     pub iterations: u32,

@@ -1,4 +1,4 @@
-//! What is measured, and the apps for it.
+//! Scenes to measure, and the apps for them.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -20,7 +20,7 @@ const FLAGS: (u32, u32) = (1000, 32);
 /// Of the chain solver; `None` is as many as it chooses itself.
 const SUBSTEPS: [Option<u32>; 5] = [None, Some(2), Some(4), Some(8), Some(16)];
 
-/// What happens.
+/// Scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     Hang,
@@ -152,13 +152,13 @@ impl Setup {
                 iterations: self.iterations,
                 instruction_set: match self.solver {
                     ClothSolver::Chains => args.isa.into(),
-                    ClothSolver::GaussSeidel => InstructionSet::Scalar,
+                    ClothSolver::GaussSeidel => ClothInstructionSet::Scalar,
                 },
                 ..Default::default()
             })
             .insert_resource(match self.scene {
-                Scene::Flags => Wind::steady(Vec3::new(8.0, 0.0, 2.0)),
-                _ => Wind::vacuum(),
+                Scene::Flags => ClothWind::steady(Vec3::new(8.0, 0.0, 2.0)),
+                _ => ClothWind::vacuum(),
             });
         self.spawn(app.world_mut());
         app.finish();
@@ -172,11 +172,11 @@ impl Setup {
     fn spawn(&self, world: &mut World) {
         let flat =
             Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
-        let corners = ClothPins::corners(GridCorner::TOP);
+        let corners = ClothPins::corners(ClothCorner::TOP);
         let pins = match self.scene {
             Scene::Hang | Scene::DrapePinned => corners,
             Scene::Drape => ClothPins::default(),
-            Scene::Flags => ClothPins::edges([GridEdge::Left]),
+            Scene::Flags => ClothPins::edges([ClothEdge::Left]),
         };
         if matches!(self.scene, Scene::Drape | Scene::DrapePinned) {
             let at = Transform::from_xyz(0.0, 0.45, 0.0);

@@ -1,4 +1,4 @@
-//! What it costs that a game has systems within a substep.
+//! Cost of a game's systems within a substep.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct Record {
     /// Particles along a side.
     size: u32,
     ms: f64,
-    /// How many times as long as without a system of a game.
+    /// Ratio to the time without a system of a game.
     ratio: f64,
 }
 
@@ -104,13 +104,13 @@ fn measure(cloths: u32, size: u32, steps: u32, add: Systems) -> f64 {
     let step = fixed.timestep();
     app.insert_resource(fixed)
         .insert_resource(TimeUpdateStrategy::ManualDuration(step))
-        .insert_resource(Wind::vacuum());
+        .insert_resource(ClothWind::vacuum());
     add(&mut app);
     for k in 0..cloths {
         app.world_mut().spawn((
             Cloth::grid(Vec2::splat(2.0), UVec2::splat(size)),
             ClothMaterial::cotton(),
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
             ClothSleep::never(),
             Transform::from_xyz(3.0 * k as f32, 0.0, 0.0),
         ));

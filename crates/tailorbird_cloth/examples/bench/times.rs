@@ -1,10 +1,10 @@
-//! How long the kernels take.
+//! Times of the kernels.
 
 use bevy_math::{DVec3, Isometry3d, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
 
 use tailorbird_solver::{
-    instruction_set::InstructionSet,
+    instruction_set::ClothInstructionSet,
     kernels::{
         aerodynamics::{Air, AirSheet, drag_and_lift_on_sheet},
         breeze::{self, Breeze},
@@ -22,24 +22,24 @@ use tailorbird_solver::{
         sphere::{self, MovingSphere},
         tether::{self, Straight, Tether},
         verlet::Verlet,
-        viscosity::{Beside, Motion},
+        viscosity::{Beside, SheetMotion},
     },
     numbers::Numbers,
     points::Points,
     shape::ClothShape,
     topology::{Topology, lattice::Lattice},
     wall_clock::WallClock,
-    wind::{Turbulence, WindShape},
+    wind::{ClothTurbulence, WindRegion},
 };
 
 /// The time of one kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KernelTime {
-    /// What it does.
+    /// Name of the kernel.
     pub name: &'static str,
     /// Time for each particle \[ns\]: the best of several.
     pub ns_per_particle: f64,
-    /// How many constraints it holds for each particle; 0 for what holds none.
+    /// Constraints for each particle; 0 for a kernel without.
     pub constraints_per_particle: f64,
 }
 
@@ -71,7 +71,7 @@ const SAMPLES: usize = 20;
 /// scalar with any.
 ///
 /// It takes about a tenth of a second for each million particles and kernel.
-pub fn measure(size: u32, instruction_set: InstructionSet) -> Vec<KernelTime> {
+pub fn measure(size: u32, instruction_set: ClothInstructionSet) -> Vec<KernelTime> {
     let level = instruction_set.level();
     let side = size.max(2);
     let mut times = Times {
@@ -84,7 +84,7 @@ pub fn measure(size: u32, instruction_set: InstructionSet) -> Vec<KernelTime> {
     times.all
 }
 
-/// What was measured.
+/// Measured times.
 struct Times {
     particles: usize,
     all: Vec<KernelTime>,
@@ -200,6 +200,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             &mut lost,
             None,
             &inv_mass,
+            0..inv_mass.len(),
         );
     });
     let particles = Touching {
@@ -213,7 +214,7 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
             overlaps: &std::sync::atomic::AtomicBool::new(false),
         },
     };
-    let motion = Motion {
+    let motion = SheetMotion {
         sheet: Sheet {
             columns: n,
             rows: n,
@@ -265,14 +266,14 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
         let found = SharedPoints::new(&mut found);
         normals::smooth_lattice(level, &lattice, &position, found, 0..n);
     });
-    let turbulence = Turbulence {
+    let turbulence = ClothTurbulence {
         speed: 1.0,
-        ..Turbulence::default()
+        ..ClothTurbulence::default()
     };
     let breeze = Breeze {
         velocity: Vec3::X,
         waves: Some(turbulence.waves(0.0, DVec3::ZERO)),
-        shape: WindShape::Everywhere,
+        shape: WindRegion::Everywhere,
         falloff: 0.0,
         to_own: Isometry3d::IDENTITY,
     };
@@ -350,7 +351,7 @@ mod tests {
 
     #[test]
     fn every_kernel_takes_time() {
-        for instruction_set in [InstructionSet::Scalar, InstructionSet::Auto] {
+        for instruction_set in [ClothInstructionSet::Scalar, ClothInstructionSet::Auto] {
             let times = measure(20, instruction_set);
             assert_eq!(times.len(), 14);
             for time in times {

@@ -1,69 +1,72 @@
 //! The command line. Every value is checked here, so that a wrong one is named with its flag (exit code 2).
 
-use std::{ops::RangeInclusive, path::PathBuf, str::FromStr};
+use std::path::PathBuf;
 
 use bevy_math::Vec3;
 use clap::{Parser, ValueEnum};
 use tailorbird_cloth::prelude::*;
 
 pub use super::demands::Scene;
-use super::demands::{Demands, Held};
+use super::{
+    demands::{Demands, Held},
+    values,
+};
 
 /// A cloth without a renderer: simulates a sheet of 2 m × 2 m, horizontal at y = 1 at the start, and prints figures.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "headless", version)]
 pub struct Args {
-    /// What happens.
+    /// Scene.
     #[arg(long, value_enum, default_value_t = Scene::Hang)]
     pub scene: Scene,
 
     /// Particles along each side.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = size, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = values::size, allow_hyphen_values = true)]
     pub size: u32,
 
-    /// How the sheet is described.
+    /// Description of the sheet.
     #[arg(long, value_enum, default_value_t = Mesh::Grid)]
     pub mesh: Mesh,
 
-    /// What is pinned: the corners (0, 0) and (0, N−1), or row 0 [default: what the scene has].
+    /// Pinned particles: the corners (0, 0) and (0, N−1), or row 0 [default: that of the scene].
     #[arg(long, value_enum)]
     pub pins: Option<Pins>,
 
-    /// How many steps to simulate [default: 300, or as long as the scene lasts].
+    /// Number of steps to simulate [default: 300, or as long as the scene lasts].
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub steps: Option<u32>,
 
     /// Steps in a second [1/s].
-    #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = hz, allow_hyphen_values = true)]
+    #[arg(long, value_name = "HZ", default_value_t = 60.0, value_parser = values::hz, allow_hyphen_values = true)]
     pub hz: f64,
 
     /// Substeps in a step [default: as many as the solver needs at this size].
-    #[arg(long, value_name = "n", value_parser = substeps, allow_hyphen_values = true)]
+    #[arg(long, value_name = "n", value_parser = values::substeps, allow_hyphen_values = true)]
     pub substeps: Option<u32>,
 
     /// Passes over the constraints in a substep.
     #[arg(long, value_name = "k", default_value_t = ClothSettings::default().iterations,
-          value_parser = iterations, allow_hyphen_values = true)]
+          value_parser = values::iterations, allow_hyphen_values = true)]
     pub iterations: u32,
 
-    /// How the constraints are solved.
+    /// Method by which the constraints are solved.
     #[arg(long, value_enum, default_value_t = Solver::Chains)]
     pub solver: Solver,
 
-    /// What the sheet is made of; the values below count all the same [default: cotton that does not stretch].
+    /// Material of the sheet; the values below count all the same [default: cotton that does not stretch].
     #[arg(long, value_name = "NAME", value_parser = material, allow_hyphen_values = true)]
     pub material: Option<ClothMaterial>,
 
     /// Acceleration downwards [m/s²].
-    #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = finite, allow_hyphen_values = true)]
+    #[arg(long, value_name = "G", default_value_t = 9.81, value_parser = values::finite, allow_hyphen_values = true)]
     pub gravity: f32,
 
     /// Rate at which motion decays [1/s] [default: the material's].
-    #[arg(long, value_name = "D", value_parser = not_negative, allow_hyphen_values = true)]
+    #[arg(long, value_name = "D", value_parser = values::not_negative, allow_hyphen_values = true)]
     pub damping: Option<f32>,
 
     /// Velocity of the air [m/s]; 0,0,0 is no air at all [default: 8,0,2 in the scene flag, else 0,0,0].
-    #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "x,y,z", value_parser = values::vector, allow_hyphen_values = true)]
     pub wind: Option<Vec3>,
 
     /// Middle and radius of a sphere [m] [default: 0,0.45,0,0.5 in the scene drape, else none].
@@ -75,31 +78,31 @@ pub struct Args {
     pub isa: Isa,
 
     /// Compliance along warp and weft [m/N] [default: 0, or the material's].
-    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A", value_parser = values::not_negative, allow_hyphen_values = true)]
     pub compliance: Option<f32>,
 
     /// Compliance in shear [m/N] [default: the material's; 0 without one for gauss-seidel].
-    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A", value_parser = values::not_negative, allow_hyphen_values = true)]
     pub shear_compliance: Option<f32>,
 
     /// Compliance in bending [1/(N m)] [default: the material's; 0 without one for gauss-seidel].
-    #[arg(long, value_name = "A", value_parser = not_negative, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A", value_parser = values::not_negative, allow_hyphen_values = true)]
     pub bend_compliance: Option<f32>,
 
     /// Friction inside the fabric [m²/s] [default: the material's].
-    #[arg(long, value_name = "V", value_parser = not_negative, allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", value_parser = values::not_negative, allow_hyphen_values = true)]
     pub viscosity: Option<f32>,
 
     /// Mass per area [kg/m²] [default: the material's].
-    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", value_parser = values::positive, allow_hyphen_values = true)]
     pub density: Option<f32>,
 
-    /// What the scenes ask for.
+    /// Demands of the scenes.
     #[command(flatten)]
     pub demands: Demands,
 
     /// Threads of the compute pool [default: one for each core].
-    #[arg(long, value_name = "T", value_parser = threads, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", value_parser = values::threads, allow_hyphen_values = true)]
     pub threads: Option<u32>,
 
     /// Other than 0: nudges each particle up or down during the first step, by up to 0.1 mm, differently for each seed.
@@ -120,22 +123,22 @@ pub struct Args {
     pub dump: Option<PathBuf>,
 
     /// Writes the start and every K-th step to the dump as well.
-    #[arg(long, value_name = "K", requires = "dump", value_parser = every, allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", requires = "dump", value_parser = values::every, allow_hyphen_values = true)]
     pub dump_every: Option<u32>,
 }
 
-/// How the sheet is described.
+/// Description of the sheet.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mesh {
-    /// As columns and rows.
+    /// Columns and rows.
     Grid,
-    /// As triangles: the same particles in random order, cells cut along random diagonals, triangles in random order.
+    /// Triangles: the same particles in random order, cells cut along random diagonals, triangles in random order.
     Shuffled,
-    /// As triangles, in random order, whose inner corners lie irregularly.
+    /// Triangles, in random order, whose inner corners lie irregularly.
     Irregular,
 }
 
-/// Which particles are held.
+/// Particles that are held.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pins {
     /// (0, 0) and (0, N−1).
@@ -148,7 +151,7 @@ pub enum Pins {
     None,
 }
 
-/// How the constraints are solved.
+/// Method by which the constraints are solved.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
     /// One after the other, in batches that share no particle.
@@ -172,7 +175,7 @@ pub enum Isa {
     Avx512,
 }
 
-impl From<Isa> for InstructionSet {
+impl From<Isa> for ClothInstructionSet {
     fn from(isa: Isa) -> Self {
         match isa {
             Isa::Auto => Self::Auto,
@@ -214,10 +217,10 @@ impl Args {
         })
     }
 
-    /// What the sheet is made of.
+    /// Material of the sheet.
     ///
-    /// The springs of the classic scheme are rigid, as they always were; shear and bending that are as soft as a fabric's are
-    /// what lets the chain solver's sheet fold.
+    /// The springs of the classic scheme are rigid, as they always were; the chain solver's sheet folds because its shear and bending are
+    /// as soft as a fabric's.
     pub fn material(&self) -> ClothMaterial {
         let rigid = ClothMaterial {
             warp_compliance: 0.0,
@@ -244,7 +247,7 @@ impl Args {
         }
     }
 
-    /// How many steps to simulate.
+    /// Number of steps to simulate.
     pub fn steps(&self) -> u32 {
         let seconds = self.scene.seconds(&self.demands);
         let of_scene = seconds.map_or(300, |seconds| (seconds * self.hz).round() as u32);
@@ -272,82 +275,8 @@ fn material(text: &str) -> Result<ClothMaterial, String> {
     })
 }
 
-fn size(text: &str) -> Result<u32, String> {
-    whole(text, 2..=4096)
-}
-
-fn substeps(text: &str) -> Result<u32, String> {
-    whole(text, 1..=ClothSettings::MOST_PASSES)
-}
-
-fn iterations(text: &str) -> Result<u32, String> {
-    whole(text, 0..=ClothSettings::MOST_PASSES)
-}
-
-fn threads(text: &str) -> Result<u32, String> {
-    whole(text, 1..=1024)
-}
-
-fn every(text: &str) -> Result<u32, String> {
-    whole(text, 1..=u32::MAX)
-}
-
-fn whole(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
-    let allowed = || {
-        let (first, last) = (range.start(), range.end());
-        format!("must be a whole number, {first} to {last}")
-    };
-    let value = text.parse().map_err(|_| allowed())?;
-    range.contains(&value).then_some(value).ok_or_else(allowed)
-}
-
-pub fn finite(text: &str) -> Result<f32, String> {
-    number(text, f32::is_finite, "a finite number")
-}
-
-pub fn positive(text: &str) -> Result<f32, String> {
-    number(
-        text,
-        |v: f32| v > 0.0 && v.is_finite(),
-        "above 0 and finite",
-    )
-}
-
-pub fn not_negative(text: &str) -> Result<f32, String> {
-    number(
-        text,
-        |v: f32| v >= 0.0 && v.is_finite(),
-        "at least 0 and finite",
-    )
-}
-
-fn hz(text: &str) -> Result<f64, String> {
-    // From steps of 100 s to steps of a microsecond.
-    number(
-        text,
-        |v: f64| (0.01..=1e6).contains(&v),
-        "above 0: 0.01 to 1000000",
-    )
-}
-
-fn number<T: FromStr + Copy>(
-    text: &str,
-    ok: impl Fn(T) -> bool,
-    allowed: &str,
-) -> Result<T, String> {
-    match text.parse() {
-        Ok(value) if ok(value) => Ok(value),
-        _ => Err(format!("must be {allowed}")),
-    }
-}
-
-fn vector(text: &str) -> Result<Vec3, String> {
-    let [x, y, z] = numbers(text)?;
-    Ok(Vec3::new(x, y, z))
-}
-
 fn sphere(text: &str) -> Result<Sphere, String> {
-    let [x, y, z, radius] = numbers(text)?;
+    let [x, y, z, radius] = values::numbers(text)?;
     if radius <= 0.0 {
         return Err(format!("the radius {radius} must be above 0"));
     }
@@ -355,13 +284,4 @@ fn sphere(text: &str) -> Result<Sphere, String> {
         center: Vec3::new(x, y, z),
         radius,
     })
-}
-
-fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
-    let values: Result<Vec<f32>, String> = text.split(',').map(|v| finite(v.trim())).collect();
-    let wrong = |_| format!("must be {N} finite numbers with commas between");
-    values
-        .map_err(|_| ())
-        .and_then(|values| values.try_into().map_err(|_| ()))
-        .map_err(wrong)
 }

@@ -1,5 +1,5 @@
-//! Where the particles are, as CSV: step,row,column,x,y,z in the world [m], with 9 significant digits, enough to read the
-//! same `f32` back.
+//! Positions of the particles, as CSV: step,row,column,x,y,z in the world [m], with 9 significant digits, enough to read the same `f32`
+//! back.
 
 use std::io::{self, Write};
 
@@ -27,10 +27,10 @@ impl<W: Write> Dump<W> {
         }
     }
 
-    /// Writes the step, where it is one to be written.
+    /// Writes the step, if it is one to be written.
     ///
     /// # Errors
-    /// Those of the file.
+    /// The errors of the file.
     pub fn write(&mut self, step: u32, sheet: &Sheet) -> io::Result<()> {
         let due = self.every.is_some_and(|every| step.is_multiple_of(every));
         if !(due || step == self.last) {
@@ -55,7 +55,7 @@ impl<W: Write> Dump<W> {
     /// Makes sure that everything is written.
     ///
     /// # Errors
-    /// Those of the file.
+    /// The errors of the file.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()
     }

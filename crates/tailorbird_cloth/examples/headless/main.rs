@@ -13,8 +13,10 @@ mod dump;
 mod mesh;
 mod paths;
 mod peaks;
+mod play;
 mod report;
 mod scene;
+mod values;
 
 use std::{
     ffi::OsString,

@@ -1,18 +1,18 @@
-//! Where things are that move.
+//! Paths of moving things.
 
 use std::f32::consts::TAU;
 
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 
-use super::scene::SIZE;
+use super::demands::SIZE;
 
-/// Where the post is that moves.
+/// Pose of the moving post.
 pub fn post(time: f32, apart: f32) -> Transform {
     Transform::from_xyz(apart * SIZE * time.min(1.0), 0.0, 0.0)
 }
 
-/// How large the curtain is that grows.
+/// Scale of the growing curtain.
 pub fn grown(time: f32) -> Vec3 {
     let part = (0.5 * (time - 2.0)).clamp(0.0, 1.0);
     let scale = 1.5 - 0.5 * (TAU * part).cos();

@@ -1,11 +1,11 @@
-//! What is seen of a sheet from step to step.
+//! Largest values of a sheet from step to step.
 
 use std::collections::VecDeque;
 
 use bevy_math::Vec3;
 use tailorbird_cloth::prelude::*;
 
-/// What was seen in the steps so far.
+/// Largest values in the steps so far.
 #[derive(Default)]
 pub struct Peaks {
     /// Of the whole run.
@@ -18,7 +18,7 @@ pub struct Peaks {
     pub energy_gained: f64,
 }
 
-/// What was seen in a step.
+/// Values in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
     /// The fastest free particle, from step to step [m/s].
@@ -40,7 +40,7 @@ impl Peaks {
         }
     }
 
-    /// What is seen after a step. `gravity` is in the cloth's frame [m/s²].
+    /// Values after a step. `gravity` is in the cloth's frame [m/s²].
     pub fn of_step(
         particles: &ClothParticles,
         topology: &ClothTopology,

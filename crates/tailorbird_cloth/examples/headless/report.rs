@@ -10,7 +10,7 @@ use tailorbird_cloth::prelude::*;
 
 use super::{cli::Args, scene::Sheet};
 
-/// What is printed; the names are those of the JSON.
+/// Report; the names are those of the JSON.
 #[derive(Serialize, Clone, Debug)]
 pub struct Report {
     particles: usize,
@@ -25,7 +25,7 @@ pub struct Report {
     stretch_p99: f32,
     /// The largest [-].
     stretch_max: f32,
-    /// How far particles moved in the last step, by its length, root of the mean square [m/s].
+    /// Displacement of the particles in the last step, by its length, root of the mean square [m/s].
     step_speed_rms: f64,
     /// The largest [m/s].
     step_speed_max: f32,

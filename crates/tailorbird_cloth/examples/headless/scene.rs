@@ -11,15 +11,12 @@ use tailorbird_cloth::prelude::*;
 
 use super::{
     cli::{Args, Mesh, Pins, Solver},
-    demands::{self, Play},
     mesh,
     peaks::{Peaks, Seen},
+    play::{self, Play},
 };
 
-/// Width and height of the sheet [m].
-pub const SIZE: f32 = 2.0;
-
-/// How far a seed moves particles [m].
+/// Displacement of particles by a seed [m].
 const NUDGE: f32 = 1e-4;
 
 /// An app with one sheet.
@@ -28,7 +25,7 @@ pub struct Sheet {
     pub app: App,
     /// The sheet.
     pub entity: Entity,
-    /// What was seen in the steps so far.
+    /// Largest values in the steps so far.
     pub peaks: Peaks,
     play: Play,
     step: u32,
@@ -70,8 +67,8 @@ impl Sheet {
             ..Default::default()
         })
         .insert_resource(match args.wind() {
-            Vec3::ZERO => Wind::vacuum(),
-            velocity => Wind::steady(velocity),
+            Vec3::ZERO => ClothWind::vacuum(),
+            velocity => ClothWind::steady(velocity),
         });
         if let Some(sphere) = args.sphere() {
             app.world_mut().spawn((
@@ -113,7 +110,7 @@ impl Sheet {
         self.app.world().resource::<ClothStepTime>().total
     }
 
-    /// What is seen after a step.
+    /// Values after a step.
     fn seen(&self) -> Seen {
         let gravity = self.app.world().resource::<ClothSettings>().gravity;
         let gravity = self.get::<ClothFrame>().vector_to_frame(gravity);
@@ -136,14 +133,14 @@ impl Sheet {
         resolution.map_or(1, |resolution| resolution.x as usize)
     }
 
-    /// Where the particles are in the world [m].
+    /// Positions of the particles in the world [m].
     pub fn world_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
         let frame = self.get::<ClothFrame>();
         let particles = self.get::<ClothParticles>();
         particles.positions().map(|p| frame.to_world(p))
     }
 
-    /// What the simulation finds wrong with the sheet.
+    /// Errors that the simulation finds in the sheet.
     pub fn errors(&self) -> Vec<String> {
         let status = self.get::<ClothStatus>();
         status.errors().map(ToString::to_string).collect()
@@ -153,7 +150,7 @@ impl Sheet {
     fn nudge(&mut self, args: &Args, timestep: Duration) {
         let particles = self.get::<ClothParticles>();
         let free = |i: &usize| !particles.is_pinned(*i);
-        let random = |i: usize| unit(args.seed ^ (i as u64).rotate_left(32));
+        let random = |i: usize| mesh::unit(args.seed ^ (i as u64).rotate_left(32));
         let (mass, moment) = (0..particles.len())
             .filter(free)
             .map(|i| (particles.mass(i), particles.mass(i) * random(i)))
@@ -177,15 +174,15 @@ impl Sheet {
 
 /// The sheet, held as asked for.
 fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
-    let (cloth, size) = (demands::cloth(args), args.scene.size());
+    let (cloth, size) = (play::cloth(args), args.scene.size());
     let reach = 0.5 * size - mesh::NEAR;
     let pins = match (args.pins(), args.mesh) {
-        (Pins::Corners, Mesh::Grid) => ClothPins::corners(GridCorner::TOP),
-        (Pins::Edge, Mesh::Grid) => ClothPins::edges([GridEdge::Top]),
+        (Pins::Corners, Mesh::Grid) => ClothPins::corners(ClothCorner::TOP),
+        (Pins::Edge, Mesh::Grid) => ClothPins::edges([ClothEdge::Top]),
         (Pins::Corners, _) => {
             let corner = (0.5 * size).extend(0.0);
             let [left, right] = [corner * Vec3::new(-1.0, 1.0, 1.0), corner];
-            let within = |center| PinSelection::Within {
+            let within = |center| ClothSelection::Within {
                 center,
                 radius: mesh::NEAR,
             };
@@ -210,16 +207,7 @@ fn spawn_sheet(world: &mut World, args: &Args) -> Entity {
             solver,
             pins,
             ClothSleep::never(),
-            Transform::from_isometry(demands::place(args.scene)),
+            Transform::from_isometry(play::place(args.scene)),
         ))
         .id()
-}
-
-/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
-pub fn unit(key: u64) -> f32 {
-    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
 }

@@ -1,4 +1,4 @@
-//! What holds a cloth carries it along where that is not felt.
+//! Motion of the holders that a cloth does not feel: it carries the cloth along.
 
 use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
 use tailorbird_solver::{
@@ -7,7 +7,7 @@ use tailorbird_solver::{
     pose::{Pose, motion},
 };
 
-use super::AttachedParticles;
+use super::ClothAttachedParticles;
 use crate::{frame::ClothFrame, particles::ClothParticles};
 
 /// The motion of a body, as seen from the frame at the start of the step. With the cloth's entity it may have been put elsewhere already.
@@ -19,7 +19,7 @@ fn motion_in(frame: &ClothFrame, from: &Pose, to: &Pose) -> Isometry3d {
     motion(&from, to, frame.isometry())
 }
 
-impl AttachedParticles {
+impl ClothAttachedParticles {
     /// The motion of the first body in this step, as seen from the frame at its start, where nothing else holds the cloth.
     pub(crate) fn motion_of_all(
         &self,
@@ -30,8 +30,8 @@ impl AttachedParticles {
         Some(motion_in(frame, &body.start, &body.end))
     }
 
-    /// The way of the first body that is not felt, as seen from the frame at the start of the step, where nothing else holds the
-    /// cloth.
+    /// The part of the first body's motion that is not felt, as seen from the frame at the start of the step, if nothing else holds
+    /// the cloth.
     fn unfelt(&self, frame: &ClothFrame, particles: &ClothParticles) -> Option<Isometry3d> {
         let body = self.leader(particles)?;
         Some(motion_in(frame, body.jumped.as_ref()?, &body.start))
@@ -43,12 +43,12 @@ impl AttachedParticles {
         self.bodies.first().filter(|_| !held_elsewhere)
     }
 
-    /// Whether something that holds the cloth was put elsewhere before this step.
+    /// Returns whether a holder of the cloth was put elsewhere before this step.
     pub(crate) fn has_jumped(&self) -> bool {
         self.bodies.iter().any(|body| body.jumped.is_some())
     }
 
-    /// Lets what holds the cloth carry it along by what of its way is too sudden, where that is so of all.
+    /// Lets the holders of the cloth carry it along by the part of their displacement that is too sudden, if all holders have one.
     pub(super) fn soften(&mut self, particles: &ClothParticles) {
         let sudden = |body: &Holder| body.excess != Vec3::ZERO;
         if self.leader(particles).is_none() || !self.bodies.iter().all(sudden) {
@@ -64,13 +64,13 @@ impl AttachedParticles {
         }
     }
 
-    /// Takes the whole cloth along, with its motion, where all that holds it was put elsewhere. Returns whether it was.
+    /// Takes the whole cloth along, with its motion, if all its holders were put elsewhere. Returns whether they were.
     pub(super) fn take_along(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> bool {
         self.bodies.iter().all(|body| body.jumped.is_some())
             && self.carry(frame, particles).is_some()
     }
 
-    /// Moves the cloth and its motion along with what holds it. Returns how it turned, where it moved.
+    /// Moves the cloth and its motion along with its holders. Returns its rotation, if it moved.
     pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> Option<Quat> {
         let motion = self.unfelt(frame, particles)?;
         let (way, turn) = (motion.translation.length(), motion.rotation.xyz().length());

@@ -1,4 +1,4 @@
-//! What the attachments of a cloth hold.
+//! Particles held by the attachments of a cloth.
 
 use std::ops::Deref;
 
@@ -17,9 +17,9 @@ use super::pose::pose_of;
 /// [`prepare_attachments`](super::prepare_attachments) alone.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct AttachedParticles(#[reflect(ignore)] pub(crate) Holds);
+pub struct ClothAttachedParticles(#[reflect(ignore)] pub(crate) Holds);
 
-impl Deref for AttachedParticles {
+impl Deref for ClothAttachedParticles {
     type Target = Holds;
 
     fn deref(&self) -> &Holds {
@@ -36,11 +36,11 @@ pub struct HeldPoint {
     pub attachment: Entity,
     /// The entity that holds it.
     pub target: Entity,
-    /// Where, in that entity's own space \[m\].
+    /// Point in that entity's own space \[m\].
     pub point: Vec3,
 }
 
-impl AttachedParticles {
+impl ClothAttachedParticles {
     /// The particles that are held rigidly.
     pub fn rigid(&self) -> impl ExactSizeIterator<Item = HeldPoint> + '_ {
         self.0.rigid.iter().map(|hold| {
@@ -60,8 +60,8 @@ impl AttachedParticles {
         self.0.springs.iter().map(given)
     }
 
-    /// How a target moved from where it was at a part of the last step, 0 to 1, to where it is now, as seen from a frame that does
-    /// not move; without changes of scale. None where it holds nothing.
+    /// Motion of a target from its pose at a part of the last step, 0 to 1, to its present one, as seen from a frame that does not move;
+    /// without changes of scale. `None` if it holds nothing.
     pub fn motion(
         &self,
         target: Entity,

@@ -6,7 +6,7 @@ use tailorbird_solver::pose::Pose;
 
 use crate::{error::ClothErrorKind, frame::split};
 
-/// The pose of an entity, or what is wrong with its transform.
+/// Pose of an entity, or the error in its transform.
 pub(super) fn pose_of(transform: &GlobalTransform) -> Result<Pose, ClothErrorKind> {
     let (place, _) = split(transform)?;
     let unturned = Mat3::from_quat(place.rotation.inverse());
@@ -34,7 +34,7 @@ mod tests {
     }
 
     proptest! {
-        /// Also where a child is sheared by its parent's scale.
+        /// Points of a child that is sheared by its parent's scale, as well.
         #[test]
         fn points_are_where_the_transform_puts_them(
             parent in transform(), child in transform(), p in vector(2.0), frame in transform(),

@@ -2,75 +2,42 @@
 
 use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
 
 use super::{
-    AttachedParticles, AttachedTo, AttachmentBroken, AttachmentForce, AttachmentOf,
-    AttachmentOffset, BreakReason, ClothAttachment, ClothAttachments, pose::pose_of,
+    ClothAttachedParticles, ClothAttachedTo, ClothAttachment, ClothAttachmentBroken,
+    ClothAttachmentForce, ClothAttachmentOf, ClothAttachmentOffset, ClothAttachmentState,
+    ClothAttachments, ClothBreakReason, pose::pose_of,
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::ClothFrame,
-    inertia::{ClothTeleported, TeleportMode},
+    inertia::{ClothTeleportMode, ClothTeleported},
     particles::ClothParticles,
-    sampling::{SampledPose, SampledPoses, excess},
-    sleep::ClothRest,
+    sampling::{ClothSampledPoses, SampledPose, excess},
+    sleep::ClothSleepState,
     step::ClothStep,
     topology::ClothTopology,
 };
 
-/// What an attachment holds, found out when it or the cloth changes. Written by [`prepare_attachments`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct AttachmentState {
-    /// The last values that were valid.
-    valid: Option<ClothAttachment>,
-    /// Particles in storage order, and their points in the target's own space \[m\].
-    #[reflect(ignore)]
-    points: Vec<(u32, Vec3)>,
-    /// Of each particle [m/N]; none for a rigid attachment.
-    compliances: Option<Vec<f32>>,
-    target: Option<Entity>,
-    /// Where the target was at the end of the step before; of a cloth that sleeps, when it fell asleep.
-    #[reflect(ignore)]
-    pose: Option<Pose>,
-    /// Where the target was seen last.
-    #[reflect(ignore)]
-    seen: Option<Pose>,
-    /// Of the target in the last step, as far as it was felt [m/s].
-    velocity: Vec3,
-    /// The scale of the cloth that the points were found for.
-    scale: Vec3,
-    /// How many particles that had.
-    particles: usize,
-    /// Of the topology.
-    revision: u64,
-    /// Whether the particles are still to be found.
-    stale: bool,
-    /// What is wrong with the selections and points.
-    #[reflect(ignore)]
-    wrong: Vec<ClothErrorKind>,
-}
-
 /// Reads what holds the attachments, and where it is at the end of this step.
 ///
-/// What is wrong with an attachment is reported for its entity, and what was valid last stays in force: the particles stay
-/// held where the target was.
+/// An error of an attachment is reported for its entity, and its last valid state stays in force: the particles stay held where the target
+/// was.
 pub fn prepare_attachments(
     step: Res<ClothStep>,
-    poses: SampledPoses,
+    poses: ClothSampledPoses,
     mut cloths: Query<
         (
             Entity,
             Option<&ClothAttachments>,
             &ClothTopology,
             &ClothFrame,
-            &ClothRest,
+            &ClothSleepState,
             &mut ClothParticles,
-            &mut AttachedParticles,
+            &mut ClothAttachedParticles,
         ),
         With<Cloth>,
     >,
@@ -78,23 +45,26 @@ pub fn prepare_attachments(
         (
             Entity,
             Ref<ClothAttachment>,
-            Option<&AttachedTo>,
-            &AttachmentForce,
-            &mut AttachmentState,
+            Option<&ClothAttachedTo>,
+            &ClothAttachmentForce,
+            &mut ClothAttachmentState,
             &mut ClothStatus,
         ),
-        With<AttachmentOf>,
+        With<ClothAttachmentOf>,
     >,
-    mut orphans: Query<(Entity, &mut ClothStatus), (With<ClothAttachment>, Without<AttachmentOf>)>,
+    mut orphans: Query<
+        (Entity, &mut ClothStatus),
+        (With<ClothAttachment>, Without<ClothAttachmentOf>),
+    >,
     commands: ParallelCommands,
 ) {
     for (entity, mut status) in &mut orphans {
-        let error = ClothErrorKind::unrelated("AttachmentOf");
+        let error = ClothErrorKind::unrelated("ClothAttachmentOf");
         ClothStatus::update(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Attachment,
+            ClothErrorSource::Attachment,
             [error],
         );
     }
@@ -112,24 +82,27 @@ pub fn prepare_attachments(
                 continue;
             };
             let mut errors = data.errors();
-            if (data.is_changed() || state.valid.is_none()) && errors.is_empty() {
+            if (data.is_changed() || state.valid.is_none())
+                && errors.is_empty()
+                && state.valid.as_ref() != Some(&*data)
+            {
                 state.valid = Some(ClothAttachment::clone(&data));
                 state.stale = true;
             }
-            let Some(&AttachedTo(target)) = to else {
+            let Some(&ClothAttachedTo(target)) = to else {
                 if let Some(target) = state.target {
-                    let broken = AttachmentBroken {
+                    let broken = ClothAttachmentBroken {
                         entity: cloth,
                         attachment,
                         target,
                         force: carried.force,
-                        reason: BreakReason::TargetGone,
+                        reason: ClothBreakReason::TargetGone,
                     };
                     commands.command_scope(|commands| give_up(commands, broken));
                 } else {
-                    errors.push(ClothErrorKind::unrelated("AttachedTo"));
+                    errors.push(ClothErrorKind::unrelated("ClothAttachedTo"));
                 }
-                let source = ErrorSource::Attachment;
+                let source = ClothErrorSource::Attachment;
                 ClothStatus::update(&mut status, entity, &commands, source, errors);
                 continue;
             };
@@ -159,7 +132,7 @@ pub fn prepare_attachments(
                 }
             };
             errors.extend(state.wrong.iter().cloned());
-            let source = ErrorSource::Attachment;
+            let source = ClothErrorSource::Attachment;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
             // Particles of another topology mean nothing in this one.
             let resolved = state.target.is_some() && state.revision == topology.revision;
@@ -182,9 +155,9 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let way = start.way_to(&end);
+            let way = start.displacement_to(&end);
             if rest.is_unseen() && step.running() {
-                state.velocity = began.way_to(&end) / step.world_seconds();
+                state.velocity = began.displacement_to(&end) / step.world_seconds();
             }
             let excess = if unfelt || way == Vec3::ZERO && teleport {
                 Vec3::ZERO
@@ -216,7 +189,7 @@ pub fn prepare_attachments(
                     && let Ok((.., mut state, _)) =
                         attachments.get_mut(Entity::from_bits(body.attachment))
                 {
-                    let way = body.start.way_to(&body.end);
+                    let way = body.start.displacement_to(&body.end);
                     state.velocity = way / step.world_seconds();
                 }
             }
@@ -224,7 +197,7 @@ pub fn prepare_attachments(
             if moved && teleported {
                 let teleported = ClothTeleported {
                     entity: cloth,
-                    mode: TeleportMode::KeepShape,
+                    mode: ClothTeleportMode::KeepShape,
                 };
                 commands.command_scope(|mut commands| commands.trigger(teleported));
             }
@@ -247,7 +220,7 @@ pub fn prepare_attachments(
     }
 }
 
-impl AttachmentState {
+impl ClothAttachmentState {
     /// Finds the particles, and where they are held.
     fn resolve(
         &mut self,
@@ -268,11 +241,11 @@ impl AttachmentState {
             }
         }
         // Those that stay held by the same stay at their points.
-        let stay = data.offset == AttachmentOffset::Keep
+        let stay = data.offset == ClothAttachmentOffset::Keep
             && self.target == Some(target)
             && self.revision == topology.revision;
         // Those of a cloth that grows grow with it.
-        let grown = data.offset == AttachmentOffset::Keep
+        let grown = data.offset == ClothAttachmentOffset::Keep
             && self.target == Some(target)
             && self.particles == topology.particles()
             && self.scale != topology.scale;
@@ -294,8 +267,8 @@ impl AttachmentState {
         };
         let stay = stay || grown;
         let point = |k: usize, i: u32| match &data.offset {
-            AttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
-            AttachmentOffset::Keep => {
+            ClothAttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
+            ClothAttachmentOffset::Keep => {
                 let mut before = before.iter().filter(|_| stay);
                 let kept = before.find(|(particle, _)| *particle == i);
                 Some(kept.map_or_else(
@@ -304,7 +277,7 @@ impl AttachmentState {
                 ))
             }
         };
-        if let AttachmentOffset::Points(points) = &data.offset
+        if let ClothAttachmentOffset::Points(points) = &data.offset
             && points.len() != 1
             && points.len() != selected.len()
         {
@@ -354,8 +327,8 @@ impl AttachmentState {
 
 /// Tells what the springs carried in the step, and breaks those that carried too much.
 pub fn break_attachments(
-    mut cloths: Query<(Entity, &ClothRest, &mut AttachedParticles), With<Cloth>>,
-    mut attachments: Query<(&AttachmentState, &mut AttachmentForce)>,
+    mut cloths: Query<(Entity, &ClothSleepState, &mut ClothAttachedParticles), With<Cloth>>,
+    mut attachments: Query<(&ClothAttachmentState, &mut ClothAttachmentForce)>,
     mut commands: Commands,
 ) {
     for (cloth, rest, mut attached) in &mut cloths {
@@ -369,15 +342,15 @@ pub fn break_attachments(
             };
             let force = body.pulled / body.substeps.max(1) as f32;
             (body.pulled, body.substeps) = (Vec3::ZERO, 0);
-            carried.set_if_neq(AttachmentForce { force });
+            carried.set_if_neq(ClothAttachmentForce { force });
             let most = state.valid.as_ref().and_then(|valid| valid.break_force);
             if most.is_some_and(|most| force.length() > most) {
-                let broken = AttachmentBroken {
+                let broken = ClothAttachmentBroken {
                     entity: cloth,
                     attachment: Entity::from_bits(body.attachment),
                     target: Entity::from_bits(body.target),
                     force,
-                    reason: BreakReason::Force,
+                    reason: ClothBreakReason::Force,
                 };
                 give_up(commands.reborrow(), broken);
             }
@@ -386,7 +359,7 @@ pub fn break_attachments(
 }
 
 /// Tells observers, then despawns the attachment.
-fn give_up(mut commands: Commands, broken: AttachmentBroken) {
+fn give_up(mut commands: Commands, broken: ClothAttachmentBroken) {
     commands.trigger(broken);
     if let Ok(mut attachment) = commands.get_entity(broken.attachment) {
         attachment.try_despawn();

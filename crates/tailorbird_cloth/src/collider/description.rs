@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use bevy_math::{Isometry3d, Vec2, Vec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-use super::{ClothCollider, ColliderShape, Compound, ConvexHull, HeightField, TriMesh};
+use super::{ClothCollider, ClothColliderShape, Compound, ConvexHull, HeightField, TriMesh};
 use crate::error::ClothErrorKind;
 
 #[derive(Serialize, Deserialize)]
@@ -15,22 +15,22 @@ use crate::error::ClothErrorKind;
     deny_unknown_fields
 )]
 struct ColliderDescription {
-    shape: ColliderShape,
+    shape: ClothColliderShape,
     #[serde(default = "friction")]
     friction: f32,
     #[serde(default)]
     margin: f32,
 }
 
-/// Of a file that does not say.
+/// Default for a file without the field.
 fn friction() -> f32 {
     ClothCollider::FRICTION
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(
-    remote = "ColliderShape",
-    rename = "ColliderShape",
+    remote = "ClothColliderShape",
+    rename = "ClothColliderShape",
     deny_unknown_fields
 )]
 enum ShapeDescription {
@@ -48,7 +48,7 @@ enum ShapeDescription {
     },
     HalfSpace,
     Cuboid {
-        half_size: Vec3,
+        size: Vec3,
     },
     Cylinder {
         radius: f32,
@@ -84,7 +84,7 @@ struct HeightFieldDescription<'a> {
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Compound", deny_unknown_fields)]
 struct CompoundDescription<'a> {
-    parts: Cow<'a, [(Isometry3d, ColliderShape)]>,
+    parts: Cow<'a, [(Isometry3d, ClothColliderShape)]>,
 }
 
 /// The value, unless something is wrong with it.
@@ -109,13 +109,13 @@ impl<'de> Deserialize<'de> for ClothCollider {
     }
 }
 
-impl Serialize for ColliderShape {
+impl Serialize for ClothColliderShape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         ShapeDescription::serialize(self, serializer)
     }
 }
 
-impl<'de> Deserialize<'de> for ColliderShape {
+impl<'de> Deserialize<'de> for ClothColliderShape {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let shape = ShapeDescription::deserialize(deserializer)?;
         let errors = shape.errors();

@@ -14,10 +14,8 @@ use crate::error::ClothErrorKind;
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct HeightField {
-    heights: Arc<[f32]>,
-    resolution: UVec2,
-    size: Vec2,
-    range: (f32, f32),
+    /// Field in the form of the solver.
+    pub(super) field: Field,
 }
 
 impl HeightField {
@@ -53,38 +51,24 @@ impl HeightField {
         {
             return Err(error);
         }
+        let resolution = UVec2::new(columns, rows);
         Ok(Self {
-            resolution: UVec2::new(columns, rows),
-            range: heights.iter().fold((f32::MAX, f32::MIN), |(low, high), h| {
-                (low.min(*h), high.max(*h))
-            }),
-            heights,
-            size,
+            field: Field::new(heights, resolution, size),
         })
     }
 
     /// The heights \[m\], row by row.
     pub fn heights(&self) -> &[f32] {
-        &self.heights
+        &self.field.heights
     }
 
     /// Columns (along x) and rows (along z).
     pub fn resolution(&self) -> UVec2 {
-        self.resolution
+        self.field.resolution
     }
 
     /// The rectangle along x and z \[m\].
     pub fn size(&self) -> Vec2 {
-        self.size
-    }
-
-    /// What the solver knows of it.
-    pub(super) fn data(&self) -> Field {
-        Field {
-            heights: self.heights.clone(),
-            resolution: self.resolution,
-            size: self.size,
-            range: self.range,
-        }
+        self.field.size
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use parry3d::transformation::try_convex_hull;
+use tailorbird_solver::fingerprint;
 
 use crate::error::ClothErrorKind;
 
@@ -18,6 +19,7 @@ pub struct ConvexHull {
 
 #[derive(Debug, PartialEq)]
 struct HullData {
+    fingerprint: u64,
     points: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
@@ -45,7 +47,11 @@ impl ConvexHull {
             return Err(flat);
         };
         let hull = Self {
-            data: Arc::new(HullData { points, triangles }),
+            data: Arc::new(HullData {
+                fingerprint: fingerprint::of_triangles(&points, &triangles),
+                points,
+                triangles,
+            }),
         };
         if hull.volume() > 0.0 {
             Ok(hull)
@@ -75,8 +81,8 @@ impl ConvexHull {
         six.sum::<f32>() / 6.0
     }
 
-    /// The same for all clones.
-    pub(super) fn id(&self) -> usize {
-        Arc::as_ptr(&self.data) as usize
+    /// Equal for equal ones.
+    pub(super) fn fingerprint(&self) -> u64 {
+        self.data.fingerprint
     }
 }

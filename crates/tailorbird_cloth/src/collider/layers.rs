@@ -1,11 +1,11 @@
-//! Which cloths collide with which colliders.
+//! Collision layers of cloths and colliders.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::contact::colliders::Layers;
 
-/// Which colliders a cloth meets, and which cloths a collider: two interact where each one's memberships share a bit with
-/// the other's filters. Optional on both; whatever has none meets everything that wants to meet it.
+/// Collision layers: a cloth and a collider interact if each one's memberships share a bit with the other's filters. Optional on both; an
+/// entity without them meets everything that wants to meet it.
 ///
 /// ```
 /// # use tailorbird_cloth::prelude::*;
@@ -21,9 +21,9 @@ use tailorbird_solver::contact::colliders::Layers;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothLayers {
-    /// The layers that it is in, a bit each.
+    /// Layers of its own, a bit each.
     pub memberships: u32,
-    /// The layers that it meets, a bit each.
+    /// Layers that it meets, a bit each.
     pub filters: u32,
 }
 
@@ -34,10 +34,10 @@ impl Default for ClothLayers {
 }
 
 impl ClothLayers {
-    /// In all layers, and meets all.
+    /// Membership in all layers, meeting all.
     pub const ALL: Self = Self::new(u32::MAX, u32::MAX);
 
-    /// In these layers, meeting those.
+    /// Creates layers from memberships and filters.
     pub const fn new(memberships: u32, filters: u32) -> Self {
         Self {
             memberships,
@@ -45,12 +45,12 @@ impl ClothLayers {
         }
     }
 
-    /// Whether the two meet.
+    /// Returns whether the two meet.
     pub const fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }
 
-    /// The layers as the solver has them.
+    /// Layers in the form of the solver.
     pub(crate) const fn layers(self) -> Layers {
         Layers {
             memberships: self.memberships,

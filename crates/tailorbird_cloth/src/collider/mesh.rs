@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::fingerprint;
 
 use crate::error::ClothErrorKind;
 
 /// A surface of triangles. A clone shares them.
 ///
-/// One that is closed, with all triangles counter-clockwise seen from outside, is solid: what gets inside is pushed out.
-/// Any other is a sheet, which keeps everything on the side where it is.
+/// A closed surface, with all triangles counter-clockwise seen from outside, is solid: particles that get inside are pushed out. Any other
+/// is a sheet, which keeps particles on the side where they are.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -20,6 +21,7 @@ pub struct TriMesh {
 
 #[derive(Debug, PartialEq)]
 struct MeshData {
+    fingerprint: u64,
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
@@ -60,6 +62,7 @@ impl TriMesh {
         }
         Ok(Self {
             data: Arc::new(MeshData {
+                fingerprint: fingerprint::of_triangles(&positions, &triangles),
                 positions,
                 triangles,
             }),
@@ -76,8 +79,8 @@ impl TriMesh {
         &self.data.triangles
     }
 
-    /// The same for all clones.
-    pub(super) fn id(&self) -> usize {
-        Arc::as_ptr(&self.data) as usize
+    /// Equal for equal ones.
+    pub(super) fn fingerprint(&self) -> u64 {
+        self.data.fingerprint
     }
 }

@@ -13,8 +13,8 @@
 //!     commands.spawn((ClothCollider::cuboid(1.0, 0.8, 1.0).with_margin(0.005), ClothLayers::new(1, 1)));
 //!     let hills = vec![0.0, 0.2, 0.1, 0.3];
 //!     commands.spawn(ClothCollider::height_field(hills, 2, Vec2::splat(50.0))?);
-//!     let arm = ColliderShape::Capsule { radius: 0.05, half_length: 0.2 };
-//!     let head = ColliderShape::Sphere { radius: 0.12 };
+//!     let arm = ClothColliderShape::Capsule { radius: 0.05, half_length: 0.2 };
+//!     let head = ClothColliderShape::Sphere { radius: 0.12 };
 //!     let above = Isometry3d::new(Vec3::Y * 0.5, Quat::IDENTITY);
 //!     commands.spawn(ClothCollider::compound([(Isometry3d::IDENTITY, arm), (above, head)])?);
 //!     Ok(())
@@ -49,9 +49,10 @@
 //!
 //! # Bodies
 //!
-//! A [`ClothCollider`] is moved by its `Transform` alone. Bodies of a physics engine are pushed to [`ExternalColliders`] in each step, and
+//! A [`ClothCollider`] is moved by its `Transform` alone. Bodies of a physics engine are pushed to [`ClothExternalColliders`] in each step, and
 //! get back what cloth did to them from [`ClothReactions`].
 
+mod colliders;
 #[cfg(feature = "serialize")]
 mod description;
 mod external;
@@ -71,14 +72,15 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 
 pub use self::{
-    external::{ColliderBody, ExternalCollider, ExternalColliders},
+    colliders::{ClothColliderState, ClothColliders},
+    external::{ClothColliderBody, ClothExternalCollider, ClothExternalColliders},
     height_field::HeightField,
     hull::ConvexHull,
     layers::ClothLayers,
     mesh::TriMesh,
     reactions::{ClothReaction, ClothReactions, gather_reactions},
-    shape::{ColliderShape, Compound},
-    snapshot::{ClothColliders, ColliderPose, snapshot_colliders},
+    shape::{ClothColliderShape, Compound},
+    snapshot::snapshot_colliders,
     stages::{
         collide_capsule, collide_cuboid, collide_half_space, collide_shape, collide_sphere,
         find_contacts,
@@ -86,7 +88,7 @@ pub use self::{
 };
 use crate::{
     error::{ClothErrorKind, ClothStatus},
-    sampling::SampledMotion,
+    sampling::ClothSampledMotion,
 };
 
 /// A solid thing that cloths collide with. It follows the entity's `Transform`, from step to step without gaps, and
@@ -94,18 +96,18 @@ use crate::{
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[require(Transform, ClothStatus, ColliderPose, SampledMotion)]
+#[require(Transform, ClothStatus, ClothColliderState, ClothSampledMotion)]
 pub struct ClothCollider {
     /// Its shape, around the entity's origin.
-    pub shape: ColliderShape,
+    pub shape: ClothColliderShape,
     /// Coulomb friction [-]. The geometric mean with the material's counts.
     pub friction: f32,
     /// Distance that cloth keeps from the shape besides its own thickness \[m\]; 0 unless set.
     pub margin: f32,
 }
 
-impl From<ColliderShape> for ClothCollider {
-    fn from(shape: ColliderShape) -> Self {
+impl From<ClothColliderShape> for ClothCollider {
+    fn from(shape: ClothColliderShape) -> Self {
         Self {
             shape,
             friction: Self::FRICTION,
@@ -120,12 +122,12 @@ impl ClothCollider {
 
     /// A ball of this radius \[m\].
     pub fn sphere(radius: f32) -> Self {
-        ColliderShape::Sphere { radius }.into()
+        ClothColliderShape::Sphere { radius }.into()
     }
 
-    /// All within `radius` \[m\] of a line of `length` \[m\] along y: `length + 2 · radius` from end to end.
+    /// A capsule: all points within `radius` \[m\] of a line of `length` \[m\] along y: `length + 2 · radius` from end to end.
     pub fn capsule(radius: f32, length: f32) -> Self {
-        ColliderShape::Capsule {
+        ClothColliderShape::Capsule {
             radius,
             half_length: 0.5 * length,
         }
@@ -134,7 +136,7 @@ impl ClothCollider {
 
     /// The hull of two balls of these radii \[m\], `length` \[m\] apart along y.
     pub fn tapered_capsule(bottom_radius: f32, top_radius: f32, length: f32) -> Self {
-        ColliderShape::TaperedCapsule {
+        ClothColliderShape::TaperedCapsule {
             bottom_radius,
             top_radius,
             half_length: 0.5 * length,
@@ -142,20 +144,20 @@ impl ClothCollider {
         .into()
     }
 
-    /// Everything below the entity's x-z plane.
+    /// A half-space: everything below the entity's x-z plane.
     pub fn half_space() -> Self {
-        ColliderShape::HalfSpace.into()
+        ClothColliderShape::HalfSpace.into()
     }
 
     /// A box with these sides \[m\].
     pub fn cuboid(x: f32, y: f32, z: f32) -> Self {
-        let half_size = 0.5 * Vec3::new(x, y, z);
-        ColliderShape::Cuboid { half_size }.into()
+        let size = Vec3::new(x, y, z);
+        ClothColliderShape::Cuboid { size }.into()
     }
 
     /// A cylinder of this radius and height \[m\] along y.
     pub fn cylinder(radius: f32, height: f32) -> Self {
-        ColliderShape::Cylinder {
+        ClothColliderShape::Cylinder {
             radius,
             half_height: 0.5 * height,
         }
@@ -165,62 +167,62 @@ impl ClothCollider {
     /// The convex hull of points \[m\].
     ///
     /// # Errors
-    /// As [`ConvexHull::new`].
+    /// The errors of [`ConvexHull::new`].
     pub fn convex_hull(points: &[Vec3]) -> Result<Self, ClothErrorKind> {
-        Ok(ColliderShape::ConvexHull(ConvexHull::new(points)?).into())
+        Ok(ClothColliderShape::ConvexHull(ConvexHull::new(points)?).into())
     }
 
     /// A mesh of triangles between these positions \[m\].
     ///
     /// # Errors
-    /// As [`TriMesh::new`].
+    /// The errors of [`TriMesh::new`].
     pub fn trimesh(
         positions: impl Into<Vec<Vec3>>,
         triangles: impl Into<Vec<[u32; 3]>>,
     ) -> Result<Self, ClothErrorKind> {
-        Ok(ColliderShape::TriMesh(TriMesh::new(positions, triangles)?).into())
+        Ok(ClothColliderShape::TriMesh(TriMesh::new(positions, triangles)?).into())
     }
 
     /// Terrain: see [`HeightField::new`].
     ///
     /// # Errors
-    /// As [`HeightField::new`].
+    /// The errors of [`HeightField::new`].
     pub fn height_field(
         heights: Vec<f32>,
         columns: u32,
         size: Vec2,
     ) -> Result<Self, ClothErrorKind> {
-        Ok(ColliderShape::HeightField(HeightField::new(heights, columns, size)?).into())
+        Ok(ClothColliderShape::HeightField(HeightField::new(heights, columns, size)?).into())
     }
 
     /// Several shapes that move as one.
     ///
     /// # Errors
-    /// As [`Compound::new`].
+    /// The errors of [`Compound::new`].
     pub fn compound(
-        parts: impl IntoIterator<Item = (Isometry3d, ColliderShape)>,
+        parts: impl IntoIterator<Item = (Isometry3d, ClothColliderShape)>,
     ) -> Result<Self, ClothErrorKind> {
-        Ok(ColliderShape::Compound(Compound::new(parts)?).into())
+        Ok(ClothColliderShape::Compound(Compound::new(parts)?).into())
     }
 
-    /// With this Coulomb friction [-].
+    /// Sets the Coulomb friction [-].
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }
 
-    /// With this margin \[m\].
+    /// Sets the margin \[m\].
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
     }
 
-    /// What is wrong with this collider.
+    /// Errors of this collider.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         check(&self.shape, self.friction, self.margin)
     }
 }
 
-/// What is wrong with a collider.
-fn check(shape: &ColliderShape, friction: f32, margin: f32) -> Vec<ClothErrorKind> {
+/// Errors of a collider.
+fn check(shape: &ClothColliderShape, friction: f32, margin: f32) -> Vec<ClothErrorKind> {
     let mut errors = shape.errors();
     let not_negative = |v: f32| v >= 0.0 && v.is_finite();
     errors.extend(ClothErrorKind::number(

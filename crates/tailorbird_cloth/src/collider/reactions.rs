@@ -1,37 +1,37 @@
-//! What bodies get back from the cloth that they push.
+//! Reactions: the effect of cloth on the bodies that it pushes.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
-use super::{ClothColliders, ExternalColliders};
+use super::{ClothColliders, ClothExternalColliders};
 use crate::{cloth::Cloth, particles::ClothParticles, step::ClothStep};
 
-/// What cloth did to bodies in the last step: for each [`ColliderBody`](super::ColliderBody) that a cloth touched, after
+/// Effect of cloth on bodies in the last step: for each [`ClothColliderBody`](super::ClothColliderBody) that a cloth touched, after
 /// [`ClothSystems::Simulate`](crate::schedule::ClothSystems::Simulate).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ClothReactions {
     pub(crate) list: Vec<(Entity, ClothReaction)>,
 }
 
-/// What cloth did to one body in a step, in world axes.
+/// Effect of cloth on one body in a step, in world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClothReaction {
-    /// Momentum that the body got \[N s\].
+    /// Momentum given to the body \[N s\].
     pub impulse: Vec3,
     /// Angular momentum about its centre of mass \[N m s\].
     pub angular_impulse: Vec3,
-    /// By how far cloth moved it within the step \[m\]: from the end pose that was given.
+    /// Displacement by cloth within the step \[m\], from the end pose that was set.
     pub translation: Vec3,
-    /// By how much cloth turned it about its centre of mass: axis times angle \[rad\].
+    /// Rotation by cloth about its centre of mass: axis times angle \[rad\].
     pub rotation: Vec3,
-    /// Its velocity with that [m/s]: the one that was given, and the impulse times the inverse mass.
+    /// Its velocity with that [m/s]: the velocity that was set, and the impulse times the inverse mass.
     pub linear_velocity: Vec3,
     /// Its angular velocity with that [rad/s].
     pub angular_velocity: Vec3,
 }
 
 impl ClothReactions {
-    /// What happened to this body; `None` where no cloth touched it.
+    /// Effect on this body; `None` if no cloth touched it.
     pub fn get(&self, body: Entity) -> Option<&ClothReaction> {
         let found = self.list.binary_search_by_key(&body, |(entity, _)| *entity);
         found.ok().map(|i| &self.list[i].1)
@@ -43,10 +43,10 @@ impl ClothReactions {
     }
 }
 
-/// Adds up what all cloths did to bodies, in the order of the cloths' entities. Where no step was made, nothing was done.
+/// Adds up the effect of all cloths on bodies, in the order of the cloths' entities. Without a step there is none.
 pub fn gather_reactions(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     mut reactions: ResMut<ClothReactions>,
     mut order: Local<Vec<Entity>>,
     mut cloths: Query<(Entity, &mut ClothParticles), With<Cloth>>,

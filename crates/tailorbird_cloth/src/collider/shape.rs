@@ -12,40 +12,40 @@ use crate::error::ClothErrorKind;
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[non_exhaustive]
-pub enum ColliderShape {
+pub enum ClothColliderShape {
     /// A ball. Where the entity is scaled, the largest factor counts, as for all round shapes.
     Sphere {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
     },
-    /// All within a radius of a line along y.
+    /// A capsule: all points within a radius of a line along y.
     Capsule {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
         /// Half of the line's length \[m\].
         half_length: f32,
     },
     /// The hull of two balls on the y axis.
     TaperedCapsule {
-        /// Of the ball at −`half_length` \[m\].
+        /// Radius of the ball at −`half_length` \[m\].
         bottom_radius: f32,
-        /// Of the ball at +`half_length` \[m\].
+        /// Radius of the ball at +`half_length` \[m\].
         top_radius: f32,
-        /// Half of the way between their centres \[m\].
+        /// Half of the distance between their centres \[m\].
         half_length: f32,
     },
-    /// Everything below the entity's x-z plane: the ground.
+    /// A half-space, the ground: everything below the entity's x-z plane.
     HalfSpace,
     /// A box. Scale counts along each of its axes.
     Cuboid {
-        /// Half of its sides \[m\].
-        half_size: Vec3,
+        /// Its sides \[m\].
+        size: Vec3,
     },
     /// A cylinder along y.
     Cylinder {
-        /// \[m\].
+        /// Radius \[m\].
         radius: f32,
-        /// \[m\].
+        /// Half of its height \[m\].
         half_height: f32,
     },
     /// The convex hull of points. Scale counts along each axis.
@@ -62,7 +62,7 @@ pub enum ColliderShape {
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(opaque, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub struct Compound(Arc<[(Isometry3d, ColliderShape)]>);
+pub struct Compound(Arc<[(Isometry3d, ClothColliderShape)]>);
 
 impl Compound {
     /// These shapes at these places \[m\]. Compounds among them are taken apart.
@@ -70,7 +70,7 @@ impl Compound {
     /// # Errors
     /// [`ClothErrorKind::EmptyCompound`]; [`ClothErrorKind::Vector`] where a place is not finite.
     pub fn new(
-        parts: impl IntoIterator<Item = (Isometry3d, ColliderShape)>,
+        parts: impl IntoIterator<Item = (Isometry3d, ClothColliderShape)>,
     ) -> Result<Self, ClothErrorKind> {
         let mut flat = Vec::new();
         for (at, shape) in parts {
@@ -82,7 +82,7 @@ impl Compound {
                 });
             }
             match shape {
-                ColliderShape::Compound(inner) => {
+                ClothColliderShape::Compound(inner) => {
                     flat.extend(inner.0.iter().map(|(to, shape)| (at * *to, shape.clone())));
                 }
                 shape => flat.push((at, shape)),
@@ -95,13 +95,13 @@ impl Compound {
     }
 
     /// The shapes and their places \[m\].
-    pub fn parts(&self) -> &[(Isometry3d, ColliderShape)] {
+    pub fn parts(&self) -> &[(Isometry3d, ClothColliderShape)] {
         &self.0
     }
 }
 
-impl ColliderShape {
-    /// What is wrong with its measures.
+impl ClothColliderShape {
+    /// Errors in its measures.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let positive = |field: &str, value: f32| {
             let ok = |v: f32| v > 0.0 && v.is_finite();
@@ -130,9 +130,9 @@ impl ColliderShape {
                 positive("ClothCollider top_radius", *top_radius),
                 length("ClothCollider half_length", *half_length),
             ],
-            Self::Cuboid { half_size } => half_size
+            Self::Cuboid { size } => size
                 .to_array()
-                .map(|side| positive("ClothCollider half_size", side)),
+                .map(|side| positive("ClothCollider size", side)),
             Self::Cylinder {
                 radius,
                 half_height,

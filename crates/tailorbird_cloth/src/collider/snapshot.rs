@@ -1,60 +1,27 @@
-//! The colliders of a step.
+//! Reads where the colliders are in a step.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
-use bevy_reflect::prelude::*;
-use tailorbird_solver::contact::colliders::{Body, ColliderId, Colliders, MovingCollider};
+use tailorbird_solver::contact::colliders::{Body, ColliderId, MovingCollider};
 
 use super::{
-    ClothCollider, ClothLayers, ColliderBody, ColliderShape, ExternalCollider, ExternalColliders,
-    check, solids::Solids,
+    ClothCollider, ClothColliderBody, ClothColliderShape, ClothColliderState, ClothColliders,
+    ClothExternalCollider, ClothExternalColliders, ClothLayers, check,
 };
 use crate::{
-    error::{ClothErrorKind, ClothStatus, ErrorSource},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
     frame::split,
-    sampling::SampledPoses,
+    sampling::ClothSampledPoses,
     step::ClothStep,
 };
 
-/// The scale of a collider. Written by [`snapshot_colliders`] alone.
-#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct ColliderPose {
-    scale: Vec3,
-}
-
-impl ColliderPose {
-    /// A scale that differs by more than this part of it is another one: below that it is the rounding of something that
-    /// turns, which must not make a mesh or hull of another size of each step.
-    const SAME_SCALE: f32 = 1e-5;
-
-    /// The scale that is in force from now on.
-    fn settle(&mut self, scale: Vec3) -> Vec3 {
-        let difference = (scale - self.scale).abs();
-        if difference.cmpgt(Self::SAME_SCALE * scale.abs()).any() {
-            self.scale = scale;
-        }
-        self.scale
-    }
-}
-
-/// The colliders of this step with their motion. Written by [`snapshot_colliders`] alone.
-#[derive(Resource, Clone, Debug, Default)]
-pub struct ClothColliders {
-    /// As the solver has them.
-    pub(crate) list: Colliders,
-    /// The bodies that cloth pushes, in the order of entities.
-    pub(super) bodies: Vec<ColliderBody>,
-    solids: Solids,
-}
-
-/// What all parts of a collider have in common.
+/// Common properties of all parts of a collider.
 struct Whole<'a> {
     step: u64,
     entity: Entity,
     part: u32,
     scale: Vec3,
-    shape: &'a ColliderShape,
+    shape: &'a ClothColliderShape,
     friction: f32,
     margin: f32,
     layers: ClothLayers,
@@ -64,18 +31,8 @@ struct Whole<'a> {
 }
 
 impl ClothColliders {
-    /// The number of colliders; each part of a compound counts.
-    pub fn len(&self) -> usize {
-        self.list.colliders.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.list.colliders.is_empty()
-    }
-
     fn add(&mut self, whole: &Whole) {
-        if let ColliderShape::Compound(compound) = whole.shape {
+        if let ClothColliderShape::Compound(compound) = whole.shape {
             for (k, (at, shape)) in compound.parts().iter().enumerate() {
                 let place = Isometry3d::new(Vec3::from(at.translation) * whole.scale, at.rotation);
                 self.add_part(whole, k as u32, shape, place);
@@ -85,7 +42,7 @@ impl ClothColliders {
         }
     }
 
-    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ColliderShape, at: Isometry3d) {
+    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ClothColliderShape, at: Isometry3d) {
         let (rotation, scale) = scaled_axes(whole.scale, at.rotation);
         let at = Isometry3d::new(at.translation, rotation);
         let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
@@ -107,7 +64,7 @@ impl ClothColliders {
     }
 
     /// The place of a body in the list of bodies.
-    fn body(&mut self, body: &ColliderBody) -> usize {
+    fn body(&mut self, body: &ClothColliderBody) -> usize {
         let found = self.bodies.binary_search_by_key(&body.body, |b| b.body);
         found.unwrap_or_else(|at| {
             self.bodies.insert(at, *body);
@@ -116,8 +73,8 @@ impl ClothColliders {
     }
 }
 
-/// How a part that is turned like this lies in a whole of this scale, and its scale along its own axes. Exact where the axes of
-/// the two agree, or the scale is the same along all; no shape here can be sheared.
+/// Rotation and scale of a part, with this rotation, in a whole of this scale. Exact if the axes of the two agree, or the scale is the same
+/// along all; no shape here can be sheared.
 fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
     if rotation == Quat::IDENTITY {
         return (rotation, scale);
@@ -134,19 +91,19 @@ fn scaled_axes(scale: Vec3, rotation: Quat) -> (Quat, Vec3) {
     (rotation, side * Vec3::from(sizes))
 }
 
-/// Reads where the colliders are at the start and at the end of the step, and takes those of [`ExternalColliders`].
+/// Reads the poses of colliders at the start and at the end of the step, and takes those of [`ClothExternalColliders`].
 ///
-/// One that is wrong, or whose transform is not finite, is reported and left out.
+/// A wrong collider, or one whose transform is not finite, is reported and left out.
 pub fn snapshot_colliders(
     step: Res<ClothStep>,
-    poses: SampledPoses,
+    poses: ClothSampledPoses,
     mut list: ResMut<ClothColliders>,
-    mut external: ResMut<ExternalColliders>,
+    mut external: ResMut<ClothExternalColliders>,
     mut colliders: Query<(
         Entity,
         &ClothCollider,
         Option<&ClothLayers>,
-        &mut ColliderPose,
+        &mut ClothColliderState,
         &mut ClothStatus,
     )>,
     mut others: Query<&mut ClothStatus, Without<ClothCollider>>,
@@ -164,7 +121,7 @@ pub fn snapshot_colliders(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Collider,
+            ClothErrorSource::Collider,
             errors,
         );
         let Ok(sampled) = poses.get(entity) else {
@@ -176,7 +133,7 @@ pub fn snapshot_colliders(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Transform,
+            ClothErrorSource::Transform,
             error,
         );
         let (Ok((end, scale)), true) = (place, valid) else {
@@ -205,7 +162,7 @@ pub fn snapshot_colliders(
         .sort_unstable_by_key(|collider| collider.id);
     list.solids.forget(step.steps());
     let ClothColliders { list, bodies, .. } = list;
-    (list.boxes).extend(list.colliders.iter().map(MovingCollider::around));
+    (list.boxes).extend(list.colliders.iter().map(MovingCollider::swept_box));
     list.bodies.extend(bodies.iter().map(|body| Body {
         inv_mass: body.inv_mass,
         inv_inertia: body.inv_inertia,
@@ -215,7 +172,7 @@ pub fn snapshot_colliders(
 
 fn take_external(
     list: &mut ClothColliders,
-    external: &mut ExternalColliders,
+    external: &mut ClothExternalColliders,
     step: u64,
     statuses: &mut Query<&mut ClothStatus, Without<ClothCollider>>,
     commands: &ParallelCommands,
@@ -256,7 +213,13 @@ fn take_external(
         }
         let entity = parts[0].entity;
         if let Ok(mut status) = statuses.get_mut(entity) {
-            ClothStatus::update(&mut status, entity, commands, ErrorSource::Collider, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                commands,
+                ClothErrorSource::Collider,
+                errors,
+            );
         } else if !errors.is_empty() {
             // They are reported in the next step.
             commands.command_scope(|mut commands| {
@@ -269,8 +232,8 @@ fn take_external(
     colliders.clear();
 }
 
-/// What is wrong with a collider from elsewhere.
-fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
+/// Errors of a collider from elsewhere.
+fn external_errors(collider: &ClothExternalCollider) -> impl Iterator<Item = ClothErrorKind> {
     let places = [collider.start, collider.end].into_iter().filter_map(|at| {
         let finite = at.translation.is_finite() && at.rotation.is_finite();
         (!finite).then(|| ClothErrorKind::Transform {
@@ -283,8 +246,8 @@ fn external_errors(collider: &ExternalCollider) -> impl Iterator<Item = ClothErr
         .chain(collider.body.iter().flat_map(body_errors))
 }
 
-/// What is wrong with a body.
-fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
+/// Errors of a body.
+fn body_errors(body: &ClothColliderBody) -> impl Iterator<Item = ClothErrorKind> {
     let error = |field: &str, value: String, allowed: &str| ClothErrorKind::Body {
         field: field.into(),
         value,
@@ -302,9 +265,9 @@ fn body_errors(body: &ColliderBody) -> impl Iterator<Item = ClothErrorKind> {
         error("inv_inertia", inertia.to_string(), allowed)
     });
     let vectors = [
-        ("ColliderBody.center_of_mass", body.center_of_mass),
-        ("ColliderBody.linear_velocity", body.linear_velocity),
-        ("ColliderBody.angular_velocity", body.angular_velocity),
+        ("ClothColliderBody.center_of_mass", body.center_of_mass),
+        ("ClothColliderBody.linear_velocity", body.linear_velocity),
+        ("ClothColliderBody.angular_velocity", body.angular_velocity),
     ];
     let vectors = vectors
         .into_iter()

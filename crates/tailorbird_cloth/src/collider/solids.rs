@@ -8,11 +8,11 @@ use tailorbird_solver::contact::{
     surface::Surface,
 };
 
-use super::ColliderShape;
+use super::ClothColliderShape;
 
-/// Hulls and meshes at the scales at which they are in use, by the addresses of their shapes.
+/// Hulls and meshes at the scales at which they are in use, by the fingerprints of their shapes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Solids(BTreeMap<(usize, [u32; 3]), Kept>);
+pub(super) struct Solids(BTreeMap<(u64, [u32; 3]), Kept>);
 
 /// A solid that is kept from step to step.
 #[derive(Clone, Debug)]
@@ -20,32 +20,30 @@ struct Kept {
     /// The step that used it last.
     used: u64,
     solid: Option<Solid>,
-    /// Held on to, so that no other shape gets its address.
-    _shape: ColliderShape,
 }
 
 impl Solids {
-    /// What was not used in this step is forgotten.
+    /// Forgets all shapes that were not used in this step.
     pub fn forget(&mut self, step: u64) {
         self.0.retain(|_, kept| kept.used == step);
     }
 
     /// A shape at this scale; `None` where nothing is left of it.
-    pub fn scaled(&mut self, step: u64, shape: &ColliderShape, scale: Vec3) -> Option<Solid> {
+    pub fn scaled(&mut self, step: u64, shape: &ClothColliderShape, scale: Vec3) -> Option<Solid> {
         let most = scale.abs().max_element();
         let solid = match *shape {
-            ColliderShape::Sphere { radius } => Solid::Sphere {
+            ClothColliderShape::Sphere { radius } => Solid::Sphere {
                 radius: radius * most,
             },
-            ColliderShape::HalfSpace => Solid::HalfSpace,
-            ColliderShape::Capsule {
+            ClothColliderShape::HalfSpace => Solid::HalfSpace,
+            ClothColliderShape::Capsule {
                 radius,
                 half_length,
             } => Solid::Capsule {
                 radii: [radius * most; 2],
                 half_length: half_length * most,
             },
-            ColliderShape::TaperedCapsule {
+            ClothColliderShape::TaperedCapsule {
                 bottom_radius,
                 top_radius,
                 half_length,
@@ -53,33 +51,33 @@ impl Solids {
                 radii: [bottom_radius * most, top_radius * most],
                 half_length: half_length * most,
             },
-            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
-                half_size: half_size * scale.abs(),
+            ClothColliderShape::Cuboid { size } => Solid::Cuboid {
+                half_size: 0.5 * size * scale.abs(),
             },
-            ColliderShape::Cylinder {
+            ClothColliderShape::Cylinder {
                 radius,
                 half_height,
             } => Solid::Cylinder {
                 radius: radius * most,
                 half_height: half_height * most,
             },
-            ColliderShape::HeightField(ref field) => Solid::Terrain {
-                field: field.data(),
+            ClothColliderShape::HeightField(ref field) => Solid::Terrain {
+                field: field.field.clone(),
                 scale,
             },
-            ColliderShape::ConvexHull(ref hull) => {
-                return self.kept(step, (hull.id(), shape), scale, || {
+            ClothColliderShape::ConvexHull(ref hull) => {
+                return self.kept(step, hull.fingerprint(), scale, || {
                     let hull = Hull::new(hull.points(), hull.triangles(), scale)?;
                     Some(Solid::Hull(Arc::new(hull)))
                 });
             }
-            ColliderShape::TriMesh(ref mesh) => {
-                return self.kept(step, (mesh.id(), shape), scale, || {
+            ClothColliderShape::TriMesh(ref mesh) => {
+                return self.kept(step, mesh.fingerprint(), scale, || {
                     let surface = Surface::new(mesh.positions(), mesh.triangles(), scale)?;
                     Some(Solid::Mesh(Arc::new(surface)))
                 });
             }
-            ColliderShape::Compound(_) => return None,
+            ClothColliderShape::Compound(_) => return None,
         };
         Some(solid)
     }
@@ -87,15 +85,14 @@ impl Solids {
     fn kept(
         &mut self,
         step: u64,
-        (id, shape): (usize, &ColliderShape),
+        fingerprint: u64,
         scale: Vec3,
         make: impl FnOnce() -> Option<Solid>,
     ) -> Option<Solid> {
-        let key = (id, scale.to_array().map(f32::to_bits));
+        let key = (fingerprint, scale.to_array().map(f32::to_bits));
         let kept = self.0.entry(key).or_insert_with(|| Kept {
             used: step,
             solid: make(),
-            _shape: shape.clone(),
         });
         kept.used = step;
         kept.solid.clone()
@@ -106,9 +103,9 @@ impl Solids {
 mod tests {
     use super::{super::TriMesh, *};
 
-    fn triangle(height: f32) -> ColliderShape {
+    fn triangle(height: f32) -> ClothColliderShape {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p + Vec3::Y * height);
-        ColliderShape::TriMesh(TriMesh::new(corners, [[0, 2, 1]]).expect("a triangle"))
+        ClothColliderShape::TriMesh(TriMesh::new(corners, [[0, 2, 1]]).expect("a triangle"))
     }
 
     /// A mesh that is gone is not taken for a new one at its address, though no step has forgotten it yet.

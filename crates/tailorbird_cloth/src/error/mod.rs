@@ -1,4 +1,4 @@
-//! What a user can get wrong, as typed errors that name the entity, the field, the value and what is allowed.
+//! Errors of users, as typed errors that name the entity, the field, the value and the allowed range.
 //!
 #![doc = include_str!("README.md")]
 
@@ -9,8 +9,8 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use thiserror::Error;
 
-pub use status::{ClothStatus, ErrorSource};
-pub use tailorbird_solver::error::ShapeError;
+pub use status::{ClothErrorSource, ClothStatus};
+pub use tailorbird_solver::error::ClothShapeError;
 
 /// Something is wrong with a cloth or a collider.
 ///
@@ -28,23 +28,23 @@ pub use tailorbird_solver::error::ShapeError;
 pub struct ClothError {
     /// The cloth or collider that is wrong.
     pub entity: Entity,
-    /// What is wrong with it.
+    /// Kind of the error.
     pub kind: ClothErrorKind,
 }
 
-/// What is wrong: the field, its value, and what is allowed.
+/// Kind of an error: the field, its value, and the allowed range.
 #[derive(Clone, Debug, PartialEq, Error, Reflect)]
 #[non_exhaustive]
 pub enum ClothErrorKind {
     /// The rest shape is wrong.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(#[from] ClothShapeError),
     /// A mesh asset cannot become a cloth.
     #[error(
         "Mesh3d {reason}, must be a triangle list with positions that is kept in the main world"
     )]
     UnusableMesh {
-        /// What is wrong with it.
+        /// Reason.
         reason: String,
     },
     /// An asset that a cloth is to be made of did not load.
@@ -52,7 +52,7 @@ pub enum ClothErrorKind {
     AssetNotLoaded {
         /// The asset.
         asset: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The vertices have no attribute that names the pins.
@@ -70,7 +70,7 @@ pub enum ClothErrorKind {
         field: String,
         /// Its value.
         value: f32,
-        /// What is allowed, with the unit.
+        /// Allowed range, with the unit.
         allowed: String,
     },
     /// A vector is not finite.
@@ -111,7 +111,7 @@ pub enum ClothErrorKind {
         field: String,
         /// The particle.
         value: u32,
-        /// How many there are.
+        /// Number of particles of the cloth.
         particles: usize,
     },
     /// Pins say "corner" or "edge" of a cloth that is no grid.
@@ -121,17 +121,17 @@ pub enum ClothErrorKind {
     NotAGrid {
         /// The type and field.
         field: String,
-        /// What was selected.
+        /// Selection.
         value: String,
     },
     /// A point of a collider's shape is not finite.
     #[error("ClothCollider {shape} points[{index}] is {value}, must be finite")]
     ColliderPoint {
-        /// Which shape.
+        /// Name of the shape.
         shape: String,
         /// The point.
         index: usize,
-        /// Where it is.
+        /// Position of the point.
         value: Vec3,
     },
     /// An index of a triangle mesh names no position.
@@ -139,7 +139,7 @@ pub enum ClothErrorKind {
         "ClothCollider triangle mesh indices[{at}] is {value}, must be below the number of positions, {vertices}"
     )]
     ColliderIndex {
-        /// Where in the list, three for each triangle.
+        /// Position in the list, three for each triangle.
         at: usize,
         /// The index.
         value: u32,
@@ -174,13 +174,13 @@ pub enum ClothErrorKind {
     #[error("ClothCollider compound has 0 parts, must have at least one")]
     EmptyCompound,
     /// The mass of a body that cloth is to push is wrong.
-    #[error("ColliderBody {field} is {value}, must be {allowed}")]
+    #[error("ClothColliderBody {field} is {value}, must be {allowed}")]
     Body {
-        /// Which value.
+        /// Name of the field.
         field: String,
         /// The value, written out.
         value: String,
-        /// What is allowed, with the unit.
+        /// Allowed range, with the unit.
         allowed: String,
     },
     /// A list has the wrong number of entries.
@@ -188,9 +188,9 @@ pub enum ClothErrorKind {
     Count {
         /// The type and field.
         field: String,
-        /// How many it has.
+        /// Number of values.
         value: usize,
-        /// How many are allowed.
+        /// Allowed numbers.
         allowed: String,
     },
     /// An attachment belongs to no cloth, or is held by nobody.
@@ -199,8 +199,8 @@ pub enum ClothErrorKind {
         /// The component that is not there.
         missing: String,
     },
-    /// What holds an attachment, or one of its parents, is nowhere.
-    #[error("AttachedTo names {value}, which has no Transform, must have one")]
+    /// An attachment's target, or one of its parents, has no transform.
+    #[error("ClothAttachedTo names {value}, which has no Transform, must have one")]
     NoTransform {
         /// The entity without.
         value: Entity,

@@ -1,4 +1,4 @@
-//! What is wrong with an entity at present.
+//! Present errors of an entity.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -6,9 +6,9 @@ use tracing::error;
 
 use super::{ClothError, ClothErrorKind};
 
-/// Which check an error came from; a check replaces its own errors alone.
+/// Check that an error came from; a check replaces its own errors alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-pub enum ErrorSource {
+pub enum ClothErrorSource {
     /// The mesh that a cloth is to be made of.
     Mesh,
     /// The rest shape.
@@ -29,8 +29,8 @@ pub enum ErrorSource {
     Transform,
     /// [`ClothCollider`](crate::collider::ClothCollider).
     Collider,
-    /// [`WindZone`](crate::wind::WindZone).
-    Wind,
+    /// [`ClothWindZone`](crate::wind::ClothWindZone).
+    ClothWind,
     /// [`ClothForces`](crate::forces::ClothForces).
     Forces,
     /// [`ClothInertia`](crate::inertia::ClothInertia).
@@ -41,12 +41,12 @@ pub enum ErrorSource {
     State,
 }
 
-/// What is wrong with this cloth, collider or zone at present; empty when all is well. Beside it, and no error: which part of a cloth's edges
-/// is too long ([`strained`](Self::strained), [`stretched`](Self::stretched)), as of its last step awake; `Changed` sees each begin and end.
+/// Present errors of this cloth, collider or zone; empty when all is well. Beside them, and no error: the part of a cloth's edges that is
+/// too long ([`strained`](Self::strained), [`stretched`](Self::stretched)), as of its last step awake; `Changed` sees each begin and end.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct ClothStatus {
-    entries: Vec<(ErrorSource, ClothErrorKind)>,
+    entries: Vec<(ClothErrorSource, ClothErrorKind)>,
     strained: f32,
     stretched: f32,
 }
@@ -57,27 +57,28 @@ impl ClothStatus {
         self.entries.iter().map(|(_, kind)| kind)
     }
 
-    /// Whether nothing is wrong.
+    /// Returns whether there are no errors.
     pub fn is_ok(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Which part of a cloth's edges is longer than its fabric lets them be [-], while it is asked for more than the fabric has: posts that
-    /// stand too far apart, a body within it. 0 where it is not, or is for a moment. It is logged when it begins.
+    /// Part of a cloth's edges that is longer than its fabric allows [-], while it is asked for more than the fabric has: posts that stand
+    /// too far apart, a body within it. 0 otherwise, and for the first moment. It is logged when it begins.
     ///
-    /// It begins where 5 % of the edges are longer by 3 %, or one is twice as long as at rest, for half a second where something touches the
-    /// cloth and for a second where nothing does; it ends where fewer than 1 % are (3 % of a sheet that is so in some place alone).
-    /// Air, forces and motion of more than 5 m/s count as loads, not as demands: see [`stretched`](Self::stretched). Where it lasts, look for what
-    /// holds or fills the cloth: [`AttachmentForce`](crate::attachment::AttachmentForce) and [`ClothPinForces`](crate::reaction::ClothPinForces) tell
-    /// who pulls. The cloth is whole again where [`stretched`](Self::stretched) is 0 as well.
+    /// It begins when 5 % of the edges are longer by 3 %, or one is twice as long as at rest, for half a second if something touches the
+    /// cloth and for a second if nothing does; it ends when fewer than 1 % are (3 % of a sheet that is strained in one place alone). Air,
+    /// forces and motion of more than 5 m/s count as loads, not as demands: see [`stretched`](Self::stretched). If it lasts, look for the
+    /// holders or bodies that cause it: [`ClothAttachmentForce`](crate::attachment::ClothAttachmentForce) and
+    /// [`ClothPinForces`](crate::reaction::ClothPinForces) tell who pulls. The cloth is whole again when [`stretched`](Self::stretched) is
+    /// 0 as well.
     pub fn strained(&self) -> f32 {
         self.strained
     }
 
-    /// Which part of a cloth's edges is longer by 3 % than its fabric lets them be [-], while it is asked for nothing that it has not: a storm, a
-    /// snatch, more weight than its substeps stand, what is left of a demand. 0 below 0.5 %. In a storm it takes more substeps then, within
-    /// [`most_substeps`](crate::settings::ClothSettings::most_substeps) and
-    /// [`substep_budget`](crate::settings::ClothSettings::substep_budget): what stays above is for want of those.
+    /// Part of a cloth's edges that is longer by 3 % than its fabric allows [-], while it is asked for no more than the fabric has: a
+    /// storm, a snatch, more weight than its substeps bear, the rest of a demand. 0 below 0.5 %. In a storm it takes more substeps then,
+    /// within [`most_substeps`](crate::settings::ClothSettings::most_substeps) and
+    /// [`substep_budget`](crate::settings::ClothSettings::substep_budget): if it stays above, these are too few.
     pub fn stretched(&self) -> f32 {
         self.stretched
     }
@@ -93,8 +94,8 @@ impl ClothStatus {
         began
     }
 
-    /// Whether this check has found nothing.
-    pub(crate) fn is_ok_for(&self, source: ErrorSource) -> bool {
+    /// Returns whether this check has found nothing.
+    pub(crate) fn is_ok_for(&self, source: ClothErrorSource) -> bool {
         self.entries.iter().all(|(s, _)| *s != source)
     }
 
@@ -105,7 +106,7 @@ impl ClothStatus {
         status: &mut Mut<Self>,
         entity: Entity,
         commands: &ParallelCommands,
-        source: ErrorSource,
+        source: ClothErrorSource,
         found: impl IntoIterator<Item = ClothErrorKind>,
     ) {
         let mut found = found.into_iter().peekable();

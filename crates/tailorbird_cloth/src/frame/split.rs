@@ -54,7 +54,7 @@ pub(super) fn split_like(
 /// A transform as a rigid frame and a scale whose signs are those of `signs`.
 ///
 /// # Errors
-/// What is wrong with the transform.
+/// The error in the transform.
 pub fn split_mirrored(
     transform: &GlobalTransform,
     signs: Vec3,
@@ -62,9 +62,9 @@ pub fn split_mirrored(
     split_like(transform, signs, (signs, Quat::IDENTITY))
 }
 
-/// What is wrong with a world transform whose axes are not at right angles.
+/// Error of a world transform whose axes are not at right angles.
 pub(super) fn check_shear(transform: &GlobalTransform) -> Option<ClothErrorKind> {
-    /// Of rounding, several parents deep.
+    /// Tolerance for rounding, several parents deep.
     const MOST: f32 = 1e-3;
     let axes = transform.affine().matrix3;
     let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3A::normalize_or_zero);

@@ -18,7 +18,7 @@
 //!     commands.spawn((
 //!         Cloth::grid(Vec2::new(0.8, 1.2), size),
 //!         ClothMotionConstraints {
-//!             max_distance: PerParticle::weighted(weights, 0.5),
+//!             max_distance: ClothPerParticle::weighted(weights, 0.5),
 //!             ..ClothMotionConstraints::default()
 //!         }
 //!         .with_backstop(0.01, 0.3),
@@ -49,22 +49,22 @@
 mod prepare;
 mod samples;
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
+use tailorbird_solver::limits::MotionLimits;
 
-pub use prepare::{MotionState, prepare_motion};
-pub use samples::TargetSamples;
+pub use prepare::prepare_motion;
 pub(crate) use samples::{begin_fixed_targets, end_fixed_targets, see_targets};
 
-use crate::error::ClothErrorKind;
+use crate::{error::ClothErrorKind, sampling::ClothHopDetector};
 
 /// A value for each particle of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum PerParticle {
-    /// The same for all.
+pub enum ClothPerParticle {
+    /// One value for all particles.
     All(
         #[cfg_attr(
             feature = "serialize",
@@ -82,7 +82,7 @@ pub enum PerParticle {
     ),
 }
 
-impl PerParticle {
+impl ClothPerParticle {
     /// Weights, 0 to 1, times the value of weight 1. A weight of 0 is 0 whatever that is: infinity is no limit.
     pub fn weighted(weights: impl IntoIterator<Item = f32>, most: f32) -> Self {
         let value = |weight| if weight == 0.0 { 0.0 } else { weight * most };
@@ -96,7 +96,7 @@ impl PerParticle {
         }
     }
 
-    /// What is wrong with it: the number of values, or one that is not `ok`.
+    /// Error of a list: in the number of values, or in a value that is not `ok`.
     fn error(
         &self,
         field: &str,
@@ -120,50 +120,49 @@ impl PerParticle {
     }
 }
 
-impl From<f32> for PerParticle {
+impl From<f32> for ClothPerParticle {
     fn from(value: f32) -> Self {
         Self::All(value)
     }
 }
 
-impl From<Vec<f32>> for PerParticle {
+impl From<Vec<f32>> for ClothPerParticle {
     fn from(values: Vec<f32>) -> Self {
         Self::Each(values)
     }
 }
 
-/// How far particles get from their targets. See the [module](self).
+/// Largest distances of particles from their targets. See the [module](self).
 ///
-/// Change it at any time. What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus), and the last valid
-/// constraints stay in force.
+/// Change it at any time. Errors are reported in [`ClothStatus`](crate::error::ClothStatus), and the last valid constraints stay in force.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(MotionState)]
+#[require(ClothMotionState)]
 pub struct ClothMotionConstraints {
     /// Furthest from the target \[m\]. Infinity, the default, is free; 0 is held.
-    pub max_distance: PerParticle,
-    /// How far behind its target, against the normal, a particle gets \[m\]. Infinity, the default, is no backstop.
-    pub backstop_distance: PerParticle,
+    pub max_distance: ClothPerParticle,
+    /// Largest distance of a particle behind its target, against the normal \[m\]. Infinity, the default, is no backstop.
+    pub backstop_distance: ClothPerParticle,
     /// Radius of the ball behind the target \[m\]. The larger, the more it is a plane. 1 by default.
-    pub backstop_radius: PerParticle,
+    pub backstop_radius: ClothPerParticle,
 }
 
 impl Default for ClothMotionConstraints {
     fn default() -> Self {
         Self {
-            max_distance: PerParticle::All(f32::INFINITY),
-            backstop_distance: PerParticle::All(f32::INFINITY),
-            backstop_radius: PerParticle::All(1.0),
+            max_distance: ClothPerParticle::All(f32::INFINITY),
+            backstop_distance: ClothPerParticle::All(f32::INFINITY),
+            backstop_radius: ClothPerParticle::All(1.0),
         }
     }
 }
 
 impl ClothMotionConstraints {
     /// No particle gets further from its target than this \[m\].
-    pub fn within(max_distance: impl Into<PerParticle>) -> Self {
+    pub fn at_most(max_distance: impl Into<ClothPerParticle>) -> Self {
         Self {
             max_distance: max_distance.into(),
             ..Self::default()
@@ -173,8 +172,8 @@ impl ClothMotionConstraints {
     /// With a backstop: how far behind the target it begins \[m\], and its radius \[m\].
     pub fn with_backstop(
         self,
-        distance: impl Into<PerParticle>,
-        radius: impl Into<PerParticle>,
+        distance: impl Into<ClothPerParticle>,
+        radius: impl Into<ClothPerParticle>,
     ) -> Self {
         Self {
             backstop_distance: distance.into(),
@@ -183,10 +182,10 @@ impl ClothMotionConstraints {
         }
     }
 
-    /// What is wrong with it, for a cloth of so many particles.
+    /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0;
-        let distance = |values: &PerParticle, field| {
+        let distance = |values: &ClothPerParticle, field| {
             values.error(field, particles, not_negative, "at least 0 [m]")
         };
         let radius = self.backstop_radius.error(
@@ -209,11 +208,11 @@ impl ClothMotionConstraints {
     }
 }
 
-/// Which space the targets are given in.
+/// Space of the targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum TargetSpace {
+pub enum ClothTargetSpace {
     /// The cloth's [`ClothFrame`](crate::frame::ClothFrame): targets move with the entity.
     #[default]
     Frame,
@@ -221,25 +220,25 @@ pub enum TargetSpace {
     World,
 }
 
-/// Where an animation wants the particles at the end of the next step; at rest without this component, and until they are
-/// set. See the [module](self).
+/// Positions that an animation wants for the particles at the end of the next step; rest positions without this component, and until they
+/// are set. See the [module](self).
 ///
-/// What is wrong is reported in [`ClothStatus`](crate::error::ClothStatus), and the targets stay where they are.
+/// Errors are reported in [`ClothStatus`](crate::error::ClothStatus), and the targets stay where they are.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(TargetSamples)]
+#[require(ClothTargetSamples)]
 pub struct ClothMotionTargets {
-    space: TargetSpace,
+    space: ClothTargetSpace,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
 
 impl ClothMotionTargets {
     /// Targets that will be given in this space.
-    pub fn in_space(space: TargetSpace) -> Self {
+    pub fn in_space(space: ClothTargetSpace) -> Self {
         Self {
             space,
             ..Self::default()
@@ -265,7 +264,7 @@ impl ClothMotionTargets {
         self.set(positions, []);
     }
 
-    /// What is wrong with them, for a cloth of so many particles.
+    /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
         let count = |values: &[Vec3], field: &str, allowed| {
             let wrong = values.len() != particles && !(allowed && values.is_empty());
@@ -293,14 +292,73 @@ impl ClothMotionTargets {
     }
 }
 
+/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothMotionState {
+    /// Largest distances of particles from their targets.
+    #[reflect(ignore)]
+    pub(crate) limits: MotionLimits,
+    /// Particles whose largest distance is 0.
+    #[reflect(ignore)]
+    held: Vec<u32>,
+    /// True if the targets move in this step.
+    moving: bool,
+    disturbed: bool,
+    /// Largest displacement of a target in this step \[m\].
+    furthest: f32,
+    /// Identity of the targets that they were aimed at.
+    aimed: [u64; 3],
+    hops: ClothHopDetector,
+    /// True if a step was left out.
+    idle: bool,
+    /// Revision of the topology.
+    revision: u64,
+}
+
+/// Number of kept frames: enough if frames are about equally long.
+const KEPT: usize = 4;
+
+/// Targets of the last frames. Comes with [`ClothMotionTargets`].
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default)]
+pub struct ClothTargetSamples {
+    /// The last one first; one for each frame in which they changed.
+    #[reflect(ignore)]
+    seen: [SeenTargets; KEPT],
+    known: usize,
+    versions: u64,
+    #[reflect(ignore)]
+    changed: Option<Tick>,
+    /// When this step of the fixed loop began.
+    #[reflect(ignore)]
+    began: Option<Tick>,
+    /// Number of steps for which they still count as moved by the fixed loop.
+    fixed: u8,
+    hops: ClothHopDetector,
+    frame: u64,
+    /// True if they were put elsewhere since the last step.
+    jumped: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+struct SeenTargets {
+    /// Number of the frame.
+    number: u64,
+    /// Different whenever it is set.
+    version: u64,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_weight_of_nothing_holds_where_others_have_no_limit() {
-        let limits = PerParticle::weighted([0.0, 0.5, 1.0], f32::INFINITY);
+        let limits = ClothPerParticle::weighted([0.0, 0.5, 1.0], f32::INFINITY);
         let expected = vec![0.0, f32::INFINITY, f32::INFINITY];
-        assert_eq!(limits, PerParticle::Each(expected));
+        assert_eq!(limits, ClothPerParticle::Each(expected));
     }
 }

@@ -2,12 +2,10 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use fearless_simd::Level;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
-    limits::MotionLimits,
     memory::heap,
     numbers::Numbers,
     points::Points,
@@ -15,43 +13,20 @@ use tailorbird_solver::{
 };
 
 use super::{
-    ClothMotionConstraints, ClothMotionTargets, TargetSamples, TargetSpace, samples::TargetsAt,
+    ClothMotionConstraints, ClothMotionState, ClothMotionTargets, ClothPerParticle,
+    ClothTargetSamples, ClothTargetSpace, samples::TargetsAt,
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     frame::ClothFrame,
     particles::ClothParticles,
-    sampling::{FrameClock, HopDetector},
+    sampling::ClothFrameClock,
     settings::ClothSettings,
-    sleep::ClothRest,
+    sleep::ClothSleepState,
     step::ClothStep,
     topology::ClothTopology,
 };
-
-/// Motion constraints during a step, in storage order. Written by [`prepare_motion`] alone.
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct MotionState {
-    /// How far particles may get from their targets.
-    #[reflect(ignore)]
-    pub(crate) limits: MotionLimits,
-    /// Particles whose largest distance is 0.
-    #[reflect(ignore)]
-    held: Vec<u32>,
-    /// Whether the targets move in this step.
-    moving: bool,
-    disturbed: bool,
-    /// How far the target goes in this step that goes furthest \[m\].
-    furthest: f32,
-    /// Which targets they were aimed at.
-    aimed: [u64; 3],
-    hops: HopDetector,
-    /// Whether a step was left out.
-    idle: bool,
-    /// Of the topology.
-    revision: u64,
-}
 
 /// A cloth that sleeps wakes where a target is this far from where it was \[m\].
 const WAKES: f32 = 1e-4;
@@ -62,16 +37,16 @@ const STANDS: f32 = 1e-5;
 /// Reads the motion constraints where they changed, and the targets at the end of this step.
 pub fn prepare_motion(
     step: Res<ClothStep>,
-    (clock, settings): (Res<FrameClock>, Res<ClothSettings>),
+    (clock, settings): (Res<ClothFrameClock>, Res<ClothSettings>),
     mut cloths: Query<
         (
             Entity,
             Option<Ref<ClothMotionConstraints>>,
-            Option<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+            Option<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
             &ClothTopology,
             &ClothFrame,
-            &ClothRest,
-            &mut MotionState,
+            &ClothSleepState,
+            &mut ClothMotionState,
             &mut ClothParticles,
             &mut ClothStatus,
         ),
@@ -98,12 +73,12 @@ pub fn prepare_motion(
         motion.disturbed = false;
         let Some(constraints) = constraints else {
             motion.disturbed = !motion.limits.max_distance.is_empty();
-            *motion.bypass_change_detection() = MotionState {
+            *motion.bypass_change_detection() = ClothMotionState {
                 disturbed: motion.disturbed,
-                ..MotionState::default()
+                ..ClothMotionState::default()
             };
             particles.0.hold(HolderKind::Limit, []);
-            for source in [ErrorSource::Motion, ErrorSource::MotionTargets] {
+            for source in [ClothErrorSource::Motion, ClothErrorSource::MotionTargets] {
                 ClothStatus::update(&mut status, entity, &commands, source, None);
             }
             continue;
@@ -111,14 +86,14 @@ pub fn prepare_motion(
         if rebuilt || constraints.is_changed() {
             let errors = constraints.errors(topology.particles());
             if errors.is_empty() {
-                motion.read(&constraints, topology);
+                motion.disturbed |= motion.read(&constraints, topology);
             } else if rebuilt {
                 // Those of another shape mean nothing to this one.
                 motion.limits.max_distance.clear();
                 motion.held.clear();
             }
-            motion.disturbed = true;
-            let source = ErrorSource::Motion;
+            motion.disturbed |= rebuilt;
+            let source = ClothErrorSource::Motion;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
         if rebuilt {
@@ -128,14 +103,14 @@ pub fn prepare_motion(
             && (rebuilt || targets.is_changed())
         {
             let errors = targets.errors(topology.particles());
-            let source = ErrorSource::MotionTargets;
+            let source = ClothErrorSource::MotionTargets;
             ClothStatus::update(&mut status, entity, &commands, source, errors);
         }
         motion.revision = topology.revision;
         if step.running() {
             let mut elsewhere = std::mem::take(&mut motion.idle);
             let valid = targets.filter(|(targets, _)| {
-                !targets.positions.is_empty() && status.is_ok_for(ErrorSource::MotionTargets)
+                !targets.positions.is_empty() && status.is_ok_for(ClothErrorSource::MotionTargets)
             });
             // One that sleeps remembers where the targets were when it fell asleep, however slowly they creep away.
             if !rest.is_asleep() {
@@ -147,7 +122,7 @@ pub fn prepare_motion(
                 elsewhere |= samples.take_jump();
                 fixed = samples.are_fixed();
                 let at = samples.at(&targets, &clock, topology.particles());
-                let moves = targets.space == TargetSpace::World
+                let moves = targets.space == ClothTargetSpace::World
                     && (frame.is_moving() || frame.jump_turn().is_some());
                 if rebuilt || at.key != motion.aimed || moves {
                     motion.aim(targets.space, &at, topology, frame, step.level());
@@ -188,13 +163,13 @@ pub fn prepare_motion(
     }
 }
 
-impl MotionState {
-    /// What it takes on the heap \[byte\].
+impl ClothMotionState {
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.limits.memory_bytes() + heap(&self.held)
     }
 
-    /// Whether the targets move on, however slowly.
+    /// Returns whether the targets move, however slowly.
     pub(crate) fn is_led(&self) -> bool {
         self.furthest > STANDS
     }
@@ -203,7 +178,7 @@ impl MotionState {
         self.disturbed
     }
 
-    /// Where a target is at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
+    /// Target at the end of the step, in the cloth's frame \[m\]; `i` is in storage order.
     ///
     /// # Panics
     /// When `i` is out of range.
@@ -211,10 +186,16 @@ impl MotionState {
         self.limits.targets[1].get(i)
     }
 
-    /// Reads valid constraints.
-    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) {
+    /// Reads valid constraints. Returns whether they are others than before.
+    fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
+        let before = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ]
+        .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
-        let stored = |values: &super::PerParticle, none: f32| -> Numbers {
+        let stored = |values: &ClothPerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };
@@ -234,6 +215,15 @@ impl MotionState {
             .filter(|(_, most)| **most == 0.0)
             .map(|(i, _)| i as u32)
             .collect();
+        let now = [
+            &self.limits.max_distance,
+            &self.limits.backstop_distance,
+            &self.limits.backstop_radius,
+        ];
+        before
+            .iter()
+            .zip(now)
+            .any(|(before, now)| **before != **now)
     }
 
     /// Puts the targets to where the particles are at rest.
@@ -246,12 +236,12 @@ impl MotionState {
 
     fn compute_normals(&mut self, topology: &Topology, level: Level) {
         let (targets, normals) = (&self.limits.targets[1], &mut self.limits.normals[1]);
-        match (&topology.lattice, topology.grid) {
-            (Some(lattice), Some(_)) => {
+        match topology.grid_lattice() {
+            Some(lattice) => {
                 let rows = 0..lattice.rows as usize;
                 normals::smooth_lattice(level, lattice, targets, SharedPoints::new(normals), rows);
             }
-            _ => normals::smooth(&topology.triangles, targets, normals),
+            None => normals::smooth(&topology.triangles, targets, normals),
         }
     }
 
@@ -274,7 +264,7 @@ impl MotionState {
     /// Reads valid targets.
     fn aim(
         &mut self,
-        space: TargetSpace,
+        space: ClothTargetSpace,
         targets: &TargetsAt,
         topology: &Topology,
         frame: &ClothFrame,
@@ -282,8 +272,8 @@ impl MotionState {
     ) {
         self.aimed = targets.key;
         let (point, vector): (&dyn Fn(Vec3) -> Vec3, &dyn Fn(Vec3) -> Vec3) = match space {
-            TargetSpace::Frame => (&|p| p, &|v| v),
-            TargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
+            ClothTargetSpace::Frame => (&|p| p, &|v| v),
+            ClothTargetSpace::World => (&|p| frame.to_frame_at_end(p), &|v| {
                 frame.end.rotation.inverse() * v
             }),
         };
@@ -306,7 +296,7 @@ impl MotionState {
         self.moving = true;
     }
 
-    /// How far the target moves in this step that moves furthest \[m\].
+    /// Largest displacement of a target in this step \[m\].
     fn furthest(&self) -> f32 {
         let [start, end] = &self.limits.targets;
         let squared = start.iter().zip(end.iter());

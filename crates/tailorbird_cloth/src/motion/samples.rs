@@ -1,55 +1,19 @@
-//! Where targets are when a step wants to know: what [`sampling`](crate::sampling) does for entities.
+//! Sampled targets: positions at the times of steps, as [`sampling`](crate::sampling) has poses of entities.
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
-use bevy_reflect::prelude::*;
 use tailorbird_solver::{
     held::HolderKind,
     memory::heap,
     particles::{Input, Particles, State},
 };
 
-use super::{ClothMotionTargets, MotionState};
+use super::{ClothMotionState, ClothMotionTargets, ClothTargetSamples, KEPT, SeenTargets};
 use crate::{
     particles::ClothParticles,
-    sampling::{FrameClock, FrameKind, HopDetector, LAPSE},
+    sampling::{ClothFrameClock, FrameKind, LAPSE},
     settings::ClothSettings,
 };
-
-/// As many as are needed where frames are about equally long.
-const KEPT: usize = 4;
-
-/// Where the targets were in the last frames. Comes with [`ClothMotionTargets`].
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(Component, Default)]
-pub struct TargetSamples {
-    /// The last one first; one for each frame in which they changed.
-    #[reflect(ignore)]
-    seen: [SeenTargets; KEPT],
-    known: usize,
-    versions: u64,
-    #[reflect(ignore)]
-    changed: Option<Tick>,
-    /// When this step of the fixed loop began.
-    #[reflect(ignore)]
-    began: Option<Tick>,
-    /// For how many steps more they count as moved by the fixed loop.
-    fixed: u8,
-    hops: HopDetector,
-    frame: u64,
-    /// Whether they were put elsewhere since the last step.
-    jumped: bool,
-}
-
-#[derive(Clone, Debug, Default)]
-struct SeenTargets {
-    /// Of the frame.
-    number: u64,
-    /// Different whenever it is set.
-    version: u64,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
-}
 
 /// Targets at a moment: a part of the way between two frames.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +21,7 @@ pub(super) struct TargetsAt<'a> {
     pub positions: [&'a [Vec3]; 2],
     pub normals: [&'a [Vec3]; 2],
     pub part: f32,
-    /// Which they are.
+    /// Identity of the targets.
     pub key: [u64; 3],
 }
 
@@ -79,8 +43,8 @@ impl TargetsAt<'_> {
     }
 }
 
-impl TargetSamples {
-    /// What it takes on the heap \[byte\].
+impl ClothTargetSamples {
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let lists = self
             .seen
@@ -89,18 +53,22 @@ impl TargetSamples {
         lists.map(heap).sum()
     }
 
-    /// Whether the targets were put elsewhere since this was asked last.
+    /// Returns whether the targets were put elsewhere since the last call.
     pub(super) fn take_jump(&mut self) -> bool {
         std::mem::take(&mut self.jumped)
     }
 
-    /// Whether the fixed loop moves the targets.
+    /// Returns whether the fixed loop moves the targets.
     pub(super) fn are_fixed(&self) -> bool {
         self.fixed > 0
     }
 
     /// Notes at a step whether the fixed loop moved them.
-    pub(super) fn begin_step(&mut self, targets: &Ref<ClothMotionTargets>, clock: &FrameClock) {
+    pub(super) fn begin_step(
+        &mut self,
+        targets: &Ref<ClothMotionTargets>,
+        clock: &ClothFrameClock,
+    ) {
         if clock.is_looping() {
             self.fixed = self.fixed.saturating_sub(1);
             self.note_moves(targets.last_changed());
@@ -119,7 +87,7 @@ impl TargetSamples {
     pub(super) fn at<'a>(
         &'a self,
         targets: &'a Ref<ClothMotionTargets>,
-        clock: &FrameClock,
+        clock: &ClothFrameClock,
         particles: usize,
     ) -> TargetsAt<'a> {
         let moment = clock.moment();
@@ -173,7 +141,7 @@ impl TargetSamples {
         seen.normals.clone_from(&targets.normals);
     }
 
-    /// How far the target gets that gets furthest \[m\].
+    /// Largest displacement of a target \[m\].
     fn furthest(&self, targets: &ClothMotionTargets) -> f32 {
         let ways = self.seen[0].positions.iter().zip(&targets.positions);
         ways.map(|(from, to)| from.distance_squared(*to))
@@ -182,7 +150,7 @@ impl TargetSamples {
     }
 }
 
-impl MotionState {
+impl ClothMotionState {
     /// Takes each particle along with its target, where that was put elsewhere.
     pub(super) fn take_along(&self, particles: &mut ClothParticles) {
         let [start, end] = &self.limits.targets;
@@ -210,9 +178,9 @@ impl MotionState {
 
 /// Notes where the targets are at the start of a frame.
 pub(crate) fn see_targets(
-    clock: Res<FrameClock>,
+    clock: Res<ClothFrameClock>,
     settings: Res<ClothSettings>,
-    mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
 ) {
     let speed = settings.valid_teleport_speed();
     for (targets, mut samples) in &mut cloths {
@@ -249,7 +217,7 @@ pub(crate) fn see_targets(
 
 /// Notes the targets before the fixed loop moves them.
 pub(crate) fn begin_fixed_targets(
-    mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>,
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
 ) {
     for (targets, mut samples) in &mut cloths {
         samples.began = Some(targets.last_changed());
@@ -257,7 +225,9 @@ pub(crate) fn begin_fixed_targets(
 }
 
 /// Notes which targets the fixed loop moved after cloth had stepped.
-pub(crate) fn end_fixed_targets(mut cloths: Query<(Ref<ClothMotionTargets>, &mut TargetSamples)>) {
+pub(crate) fn end_fixed_targets(
+    mut cloths: Query<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
+) {
     for (targets, mut samples) in &mut cloths {
         samples.note_moves(targets.last_changed());
     }

@@ -1,8 +1,8 @@
-//! What starts too suddenly for cloth to follow.
+//! Blows: motion that starts too suddenly for cloth to follow.
 
 use bevy_math::Vec3;
 
-/// What holds a whole cloth does not pull it with more than this [m/s²]: 2.5 m/s from one step of 1/60 s to the next.
+/// Largest acceleration of a whole cloth by its holder [m/s²]: 2.5 m/s from one step of 1/60 s to the next.
 const MOST_ACCELERATION: f32 = 150.0;
 
 /// The part of a way in a step \[m\] that carries cloth instead of pulling it, after a step with this velocity [m/s]; and the velocity of

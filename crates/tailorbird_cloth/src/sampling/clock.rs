@@ -1,10 +1,10 @@
-//! When frames and steps are.
+//! Times of frames and steps.
 
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 
-/// How many frames back is known where things were.
+/// Number of past frames for which places are known.
 pub(crate) const DEPTH: usize = 8;
 
 /// Over how many frames the longest one is looked for.
@@ -16,8 +16,8 @@ const HITCH: i64 = 100_000_000;
 /// The frames so far, and the moment that is sampled in the step in progress. In nanoseconds of `Time<Virtual>`, as frames that are
 /// equally long must give equal fractions.
 #[derive(Resource, Clone, Debug, Default)]
-pub struct FrameClock {
-    /// When the things were where they were last seen, the last frame first.
+pub struct ClothFrameClock {
+    /// Times of the last places, the last frame first.
     times: [i64; DEPTH],
     known: usize,
     /// The lengths of the last frames, those left out that are longer than a hitch.
@@ -25,45 +25,45 @@ pub struct FrameClock {
     /// The length of the last frame.
     length: i64,
     hitch: bool,
-    /// Whether what is seen takes the place of what was seen last.
+    /// True if a new frame takes the place of the last one.
     pub(super) replaces: bool,
     /// The last frame and the one in progress.
     span: [i64; 2],
-    /// How late things are sampled at both ends of that.
+    /// Delay of sampling at both ends of that.
     delay: [i64; 2],
     pub(super) kind: FrameKind,
-    /// How many frames have begun.
+    /// Number of frames that have begun.
     pub(super) frame: u64,
-    /// How many of them were seen at a time of their own.
+    /// Number of frames that were seen at a time of their own.
     seen: u64,
-    /// How many steps have been sampled.
+    /// Number of steps that have been sampled.
     pub(super) step: u64,
-    /// Whether the fixed loop is running.
+    /// True while the fixed loop is running.
     pub(super) looping: bool,
-    /// What is sampled in the step in progress.
+    /// Moment that is sampled in the step in progress.
     pub(super) moment: Moment,
 }
 
-/// What came between the places of the last two frames.
+/// Event between the places of the last two frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum FrameKind {
-    /// There is nothing before.
+    /// No place is known before.
     #[default]
     First,
     /// No time has passed at all yet: it is where it begins, whoever puts it there last.
     Start,
     /// Time stood still.
     Still,
-    /// So much time that nobody saw what happened.
+    /// A pause so long that nobody saw what happened.
     Hitch,
-    /// So many seconds.
+    /// Seconds between the two.
     Passed(f32),
 }
 
 /// A moment between two frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// How many frames ago the two were, after two more before them.
+    /// Ages of the two frames, in frames, after two more before them.
     pub frames: [usize; 4],
     /// The times between the four \[s\].
     pub gaps: [f32; 3],
@@ -75,13 +75,13 @@ fn nanoseconds(time: Duration) -> i64 {
     i64::try_from(time.as_nanos()).unwrap_or(i64::MAX)
 }
 
-impl FrameClock {
-    /// What came between the places of the last two frames.
+impl ClothFrameClock {
+    /// Event between the places of the last two frames.
     pub(crate) fn kind(&self) -> FrameKind {
         self.kind
     }
 
-    /// How many frames have begun.
+    /// Number of frames that have begun.
     pub(crate) fn frame(&self) -> u64 {
         self.frame
     }
@@ -91,12 +91,12 @@ impl FrameClock {
         self.seen
     }
 
-    /// Whether the fixed loop is running.
+    /// Returns whether the fixed loop is running.
     pub(crate) fn is_looping(&self) -> bool {
         self.looping
     }
 
-    /// What is sampled in the step in progress.
+    /// Moment that is sampled in the step in progress.
     pub(crate) fn moment(&self) -> Moment {
         self.moment
     }
@@ -207,14 +207,14 @@ mod tests {
     }
 
     /// The time that a moment stands for \[ns\].
-    fn time(clock: &FrameClock, moment: Moment) -> f64 {
+    fn time(clock: &ClothFrameClock, moment: Moment) -> f64 {
         let [_, _, older, newer] = moment.frames.map(|k| clock.times[k] as f64);
         older + f64::from(moment.part) * (newer - older)
     }
 
     #[test]
     fn a_step_at_the_end_of_each_frame_sees_things_as_they_are() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         for frame in 1..100 {
             clock.begin_frame(at(16_666_667 * frame), at(16_666_667));
             let moment = clock.moment_at(at(16_666_667 * frame));
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn after_a_hitch_the_delay_is_what_it_was() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         let mut end = 0;
         for frame in 0..40 {
             let length = if frame == 20 { 250_000_000 } else { 16_000_000 };
@@ -237,10 +237,10 @@ mod tests {
         }
     }
 
-    /// Where a level is loaded, several frames take long.
+    /// Loading a level makes several frames long.
     #[test]
     fn long_frames_do_not_delay_what_comes_after_them_for_long() {
-        let mut clock = FrameClock::default();
+        let mut clock = ClothFrameClock::default();
         let (mut end, mut since) = (0, 0);
         for frame in 0..200 {
             let length = [250, 180, 200, 150]
@@ -259,7 +259,7 @@ mod tests {
         /// Whatever the frames do: never ahead of what is known, never back, and no faster than a tenth faster.
         #[test]
         fn what_is_sampled_passes_evenly(lengths in proptest::collection::vec(2_000_000i64..60_000_000, 3..60), hz in 30i64..240) {
-            let mut clock = FrameClock::default();
+            let mut clock = ClothFrameClock::default();
             let step = 1_000_000_000 / hz;
             let (mut end, mut next) = (0, step);
             let mut last: Option<f64> = None;
@@ -286,7 +286,7 @@ mod tests {
 
         #[test]
         fn frames_that_vary_a_little_are_sampled_at_their_own_speed(lengths in proptest::collection::vec(10_000_000i64..20_000_000, 60)) {
-            let mut clock = FrameClock::default();
+            let mut clock = ClothFrameClock::default();
             let step = 16_000_000;
             let (mut end, mut next) = (0, step);
             let mut last: Option<(f64, i64)> = None;

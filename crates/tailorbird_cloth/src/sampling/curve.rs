@@ -5,7 +5,7 @@ use bevy_transform::components::Transform;
 
 use super::clock::Moment;
 
-/// How many places a curve goes by.
+/// Number of places that a curve goes by.
 pub(super) const PLACES: usize = 4;
 
 /// A point of the curve through the last two of four values, at a part of the way between them.
@@ -39,7 +39,7 @@ fn cubic(values: [Vec3; PLACES], [before, last, gap]: [f32; 3], part: f32) -> Ve
     from + chord * (u * u * (3.0 - 2.0 * u)) + start * (u * v * v) - end * (u * u * v)
 }
 
-/// Where something was at a moment that was seen at these places, the last one first.
+/// Place at a moment, on the curve by these places, the last one first.
 pub(super) fn between(frames: &[Transform], moment: &Moment) -> Transform {
     let [first, second, from, to] = moment.frames.map(|k| &frames[k]);
     if moment.part <= 0.0 || from == to {
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Of what falls, the fall.
+        /// A fall is sampled exactly.
         #[test]
         fn parabolas_are_exact(gaps in [0.005f32..0.04, 0.005f32..0.04, 0.005f32..0.04], part in 0.0f32..1.0) {
             let fall = |t: f32| Vec3::new(2.0 * t, 3.0 * t - 4.9 * t * t, 0.0);

@@ -1,4 +1,4 @@
-//! What is motion, and what is put elsewhere.
+//! Distinction of motion from hops.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
@@ -8,14 +8,14 @@ use bevy_transform::components::Transform;
 /// Tells motion from hops by what moved before: see
 /// [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-pub struct HopDetector {
-    /// Of the last motion [m/s].
+pub struct ClothHopDetector {
+    /// Velocity of the last motion [m/s].
     velocity: Vec3,
-    /// Of the way that was a hop, where the last one was [m/s].
+    /// Velocity of the last displacement, if that was a hop [m/s].
     suspect: Option<Vec3>,
 }
 
-impl HopDetector {
+impl ClothHopDetector {
     /// Takes a way \[m\] that took some time \[s\], and tells whether it is a hop: whether the velocity in it differs from the
     /// one before by more than that one's magnitude and `speed` [m/s]. A second one like it is motion.
     pub fn is_hop(&mut self, way: Vec3, seconds: f32, speed: f32) -> bool {
@@ -38,8 +38,8 @@ impl HopDetector {
         self.velocity
     }
 
-    /// Where something came from that hopped from `from` to `to`, had it been put elsewhere and then moved on as before; none
-    /// where it did not hop. `metre` is how long a unit of its space is in the world \[m\].
+    /// Place from which an entity that hopped from `from` to `to` came, had it been put elsewhere and then moved on as before; `None` if it
+    /// did not hop. `metre` is the length of a unit of its space in the world \[m\].
     pub(super) fn came_from(
         &mut self,
         [from, to]: [&Transform; 2],
@@ -91,10 +91,10 @@ pub(super) fn take_along(it: &mut Transform, [from, to]: [&Transform; 2]) {
 ///
 /// Written once for each entity whose own `Transform` did so, in the step that takes it into account.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-pub struct Teleported {
+pub struct ClothMotionTeleported {
     /// A cloth, what holds it, a collider, a zone of wind, or a parent of one of them.
     pub entity: Entity,
-    /// Whether the game said so; else it was seen.
+    /// True if the game said so; else it was seen.
     pub told: bool,
 }
 
@@ -105,7 +105,7 @@ mod tests {
     const SPEED: f32 = 30.0;
 
     fn hops(ways: &[f32], seconds: f32) -> Vec<bool> {
-        let mut detector = HopDetector::default();
+        let mut detector = ClothHopDetector::default();
         ways.iter()
             .map(|way| detector.is_hop(Vec3::X * *way, seconds, SPEED))
             .collect()
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_hops_goes_on_as_fast_as_before_in_its_new_direction() {
-        let mut detector = HopDetector::default();
+        let mut detector = ClothHopDetector::default();
         let seconds = 1.0 / 60.0;
         detector.is_hop(Vec3::X * 3.0 * seconds, seconds, SPEED);
         let from = Transform::from_xyz(1.0, 0.0, 0.0);

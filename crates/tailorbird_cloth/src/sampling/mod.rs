@@ -1,17 +1,17 @@
-//! Where things are when a step wants to know: what holds cloth, carries it, pushes it or blows at it.
+//! Sampling of poses at the times of steps: of entities that hold cloth, carry it, push it or blow at it.
 //!
 //! Cloth steps at a fixed rate. Games move things in `FixedUpdate` and in physics engines, step by step; and in `Update` and
 //! `PostUpdate`, as all animation is, frame by frame. Both may be at any rate, and one may be above the other in the hierarchy: a
 //! bone that is animated in each frame, on a character that physics moves. **The rule**:
 //!
-//! - **What the fixed loop moves is taken as it is**, without delay. That is seen: a `Transform` that is another one when cloth steps
-//!   than when the fixed loop began that step.
-//! - **What is moved between frames is sampled a frame late**, evenly over the steps: where it was between the frames on both sides of
-//!   that moment, on a curve without kinks. Where there is one step at the end of each frame, that is where it is.
-//! - **What moved while cloth did not simulate, or hopped, carries cloth along**; it is not felt.
+//! - **An entity that the fixed loop moves is taken as it is**, without delay. It is recognised by a `Transform` that changes between the
+//!   start of the fixed loop's step and that of cloth.
+//! - **An entity that is moved between frames is sampled a frame late**, evenly over the steps: its pose between the frames on both sides
+//!   of that moment, on a curve without kinks. With one step at the end of each frame, that is its present pose.
+//! - **An entity that moved while cloth did not simulate, or hopped, carries cloth along**; its motion is not felt.
 //!
-//! Translation, rotation and scale of each entity are looked at by themselves: who runs in `FixedUpdate` and looks round in `Update` is
-//! both. So is each parent.
+//! Translation, rotation and scale of each entity are judged by themselves: a character that runs in `FixedUpdate` and looks round in
+//! `Update` is both. Each parent is judged by itself, too.
 //!
 //! ```text
 //! frame            N−1              N                N+1
@@ -24,7 +24,7 @@
 //! see the hand at  s₁−d, s₂−d            s₃−d, s₄−d  on the way from P₀ to P₁, where d is the length of a frame
 //! ```
 //!
-//! The delay d is the length of the longest of the last 32 frames, so that frames which vary do not make what is sampled vary in speed. It
+//! The delay d is the length of the longest of the last 32 frames, so that varying frames do not make sampled motion vary in speed. It
 //! grows at once, and shrinks within a quarter of a second. A frame of more than 0.1 s that takes
 //! three times as long as the one before (an app that was suspended, a level that was loaded) is a pause, in which cloth is carried.
 //!
@@ -33,23 +33,23 @@
 //!
 //! # Hops
 //!
-//! A way whose velocity differs from the one before by more than that one's magnitude and
-//! [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) is a hop: at 60 frames a second half a metre for what
-//! stood, at 30 one metre. All but the motion before it is carried. [`SampledMotion::teleport`] tells of a shorter one; it is a component of
-//! each cloth, collider and zone, of all that holds a cloth, and of all their parents:
+//! A displacement whose velocity differs from the one before by more than that one's magnitude and
+//! [`ClothSettings::teleport_speed`](crate::settings::ClothSettings::teleport_speed) is a hop: at 60 frames a second half a metre for an
+//! entity that stood, at 30 one metre. All but the motion before it is carried. [`ClothSampledMotion::teleport`] tells of a shorter one; it is a component of
+//! each cloth, collider and zone, of all holders of a cloth, and of all their parents:
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
 //! # use bevy_transform::components::Transform;
 //! # use tailorbird_cloth::prelude::*;
-//! fn climb(mut hands: Query<(&mut Transform, &mut SampledMotion)>) {
+//! fn climb(mut hands: Query<(&mut Transform, &mut ClothSampledMotion)>) {
 //!     for (mut transform, mut motion) in &mut hands {
 //!         transform.translation.y += 0.3;
 //!         motion.teleport();
 //!     }
 //! }
 //!
-//! fn tell(mut teleports: MessageReader<Teleported>) {
+//! fn tell(mut teleports: MessageReader<ClothMotionTeleported>) {
 //!     for teleport in teleports.read() {
 //!         println!("{} was put elsewhere", teleport.entity);
 //!     }
@@ -58,9 +58,9 @@
 //!
 //! # Blows
 //!
-//! What stays below that may still start or stop too suddenly for cloth to follow. Where one thing holds all of a cloth, its entity or what it
-//! is attached to, it pulls with at most 150 m/s²; what it goes beyond carries the cloth. A holder that stood and moves at 8 to 29 m/s from
-//! one step to the next would else stretch single edges of a cape by 50 to 120 % for a moment.
+//! Motion below that may still start or stop too suddenly for cloth to follow. If one holder has all of a cloth (its entity, or the target of
+//! its attachments), it pulls with at most 150 m/s²; the displacement beyond carries the cloth. Otherwise a holder that stood and moves at 8
+//! to 29 m/s from one step to the next would stretch single edges of a cape by 50 to 120 % for a moment.
 //!
 //! A change of parents is a hop as well. A world whose origin is shifted hops as a whole, which nobody feels.
 
@@ -69,67 +69,60 @@ mod clock;
 mod curve;
 mod hop;
 mod poses;
+mod sample;
 
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use bevy_time::{Fixed, Time, Virtual};
-use bevy_transform::{components::Transform, helper::TransformHelper};
+use bevy_transform::components::Transform;
 
 pub(crate) use blow::excess;
+pub use clock::ClothFrameClock;
 use clock::DEPTH;
-pub use clock::FrameClock;
 pub(crate) use clock::FrameKind;
-use curve::between;
 use hop::take_along;
-pub use hop::{HopDetector, Teleported};
+pub use hop::{ClothHopDetector, ClothMotionTeleported};
+pub use poses::ClothSampledPoses;
 pub(crate) use poses::SampledPose;
-pub use poses::SampledPoses;
+pub(crate) use sample::{
+    FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step, pass_on_teleports,
+    sample_motion, sample_parents, see_frame,
+};
 
-use crate::{frame::ClothFrame, settings::ClothSettings, step::ClothStep};
-
-/// Runs when each step of the fixed loop begins, before all that moves things in it.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopBegins;
-
-/// Runs when each step of the fixed loop ends.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopEnds;
-
-/// What the fixed loop has not moved for so many steps is moved between frames.
+/// Number of steps without motion by the fixed loop after which an entity counts as moved between frames.
 pub(crate) const LAPSE: u8 = 15;
 
-/// How an entity moves, as cloth sees it. On all that holds, carries, pushes and blows at cloth, and on their parents. See the
+/// Motion of an entity, as cloth sees it. On all entities that hold, carry, push or blow at cloth, and on their parents. See the
 /// [module](self).
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default)]
-pub struct SampledMotion {
-    /// Where it was seen in the last frames, the last one first.
+pub struct ClothSampledMotion {
+    /// Transforms in the last frames, the last one first.
     #[reflect(ignore)]
     frames: [Transform; DEPTH],
-    /// At the start of the step.
+    /// Transform at the start of the step.
     #[reflect(ignore)]
     from: Transform,
-    /// At its end.
+    /// Transform at its end.
     #[reflect(ignore)]
     now: Transform,
-    /// When this step of the fixed loop began.
+    /// Transform when this step of the fixed loop began.
     #[reflect(ignore)]
     began: Transform,
-    /// For how many steps more translation, rotation and scale count as moved by the fixed loop.
+    /// Number of steps for which translation, rotation and scale still count as moved by the fixed loop.
     fixed: [u8; 3],
-    hops: HopDetector,
+    hops: ClothHopDetector,
     parent: Option<Entity>,
     frame: u64,
     step: u64,
     asked: bool,
-    /// Whether it hopped since the last step.
+    /// True if it hopped since the last step.
     hopped: bool,
-    /// Whether it was put elsewhere before this step.
+    /// True if it was put elsewhere before this step.
     teleported: bool,
 }
 
-impl SampledMotion {
+impl ClothSampledMotion {
     /// The entity is put elsewhere: whatever way it goes until the next step carries what cloth it holds, and is not felt.
     pub fn teleport(&mut self) {
         self.asked = true;
@@ -163,7 +156,7 @@ impl SampledMotion {
         take_along(&mut self.now, way);
     }
 
-    /// Where it got from one frame to the next, without what the fixed loop did.
+    /// Motion from one frame to the next, without that of the fixed loop.
     fn moved_between(&self, [from, to]: [&Transform; 2]) -> Transform {
         let [translation, rotation, scale] = self.fixed.map(|steps| steps > 0);
         Transform {
@@ -190,200 +183,6 @@ impl SampledMotion {
             if moved {
                 *fixed = LAPSE;
             }
-        }
-    }
-}
-
-/// Puts [`SampledMotion`] on the parents of what has it.
-pub(crate) fn sample_parents(
-    new: Query<
-        Entity,
-        (
-            With<SampledMotion>,
-            Or<(Added<SampledMotion>, Changed<ChildOf>)>,
-        ),
-    >,
-    parents: Query<&ChildOf>,
-    unsampled: Query<(), (With<Transform>, Without<SampledMotion>)>,
-    mut commands: Commands,
-) {
-    for entity in &new {
-        for parent in parents.iter_ancestors(entity) {
-            if unsampled.contains(parent) {
-                commands
-                    .entity(parent)
-                    .try_insert_if_new(SampledMotion::default());
-            }
-        }
-    }
-}
-
-/// Tells all that moves a cloth that it was put elsewhere, where the cloth's frame was told.
-pub(crate) fn pass_on_teleports(
-    frames: Query<(Entity, &ClothFrame)>,
-    parents: Query<&ChildOf>,
-    mut motions: Query<&mut SampledMotion>,
-) {
-    for (entity, _) in frames.iter().filter(|(_, frame)| frame.is_asked()) {
-        for entity in std::iter::once(entity).chain(parents.iter_ancestors(entity)) {
-            if let Ok(mut motion) = motions.get_mut(entity) {
-                motion.asked = true;
-            }
-        }
-    }
-}
-
-/// Notes where things are at the start of a frame, before its steps: where the frame before left them.
-pub(crate) fn see_frame(
-    mut clock: ResMut<FrameClock>,
-    time: Res<Time<Virtual>>,
-    settings: Res<ClothSettings>,
-    helper: TransformHelper,
-    mut things: Query<(&Transform, Option<&ChildOf>, &mut SampledMotion)>,
-) {
-    clock.begin_frame(time.elapsed(), time.delta());
-    let speed = settings.valid_teleport_speed();
-    let FrameClock {
-        kind,
-        frame,
-        replaces,
-        ..
-    } = *clock;
-    for (place, child, mut motion) in &mut things {
-        let parent = child.map(ChildOf::parent);
-        let known = motion.frame + 1 == frame && motion.parent == parent;
-        motion.frame = frame;
-        if !known || kind == FrameKind::First {
-            motion.restart(place, parent);
-            continue;
-        }
-        let before = motion.frames[0];
-        match kind {
-            FrameKind::First => {}
-            FrameKind::Start => motion.frames[0] = *place,
-            FrameKind::Still => motion.take_along([&before, place]),
-            FrameKind::Hitch => {
-                let moved = motion.moved_between([&before, place]);
-                motion.take_along([&before, &moved]);
-                motion.see(place, replaces);
-            }
-            FrameKind::Passed(seconds) => {
-                if motion.asked {
-                    let moved = motion.moved_between([&before, place]);
-                    motion.take_along([&before, &moved]);
-                } else if motion.fixed[0] == 0 {
-                    let moved = parent.filter(|_| before.translation != place.translation);
-                    let limits = [seconds, speed, metre_of(moved, &helper)];
-                    if let Some(start) = motion.hops.came_from([&before, place], limits) {
-                        motion.take_along([&before, &start]);
-                        motion.hopped = true;
-                    }
-                }
-                motion.see(place, replaces);
-            }
-        }
-    }
-}
-
-/// How long a unit of a parent's space is in the world \[m\].
-fn metre_of(parent: Option<Entity>, helper: &TransformHelper) -> f32 {
-    parent
-        .and_then(|parent| helper.compute_global_transform(parent).ok())
-        .map(|place| place.affine().matrix3.determinant().abs().cbrt())
-        .filter(|metre| *metre > 0.0 && metre.is_finite())
-        .unwrap_or(1.0)
-}
-
-/// Notes where things are before the fixed loop moves them.
-pub(crate) fn begin_fixed_step(
-    mut clock: ResMut<FrameClock>,
-    mut things: Query<(&Transform, &mut SampledMotion)>,
-) {
-    clock.looping = true;
-    for (place, mut motion) in &mut things {
-        motion.began = *place;
-    }
-}
-
-/// Notes what the fixed loop moved after cloth had stepped.
-pub(crate) fn end_fixed_step(
-    mut clock: ResMut<FrameClock>,
-    mut things: Query<(&Transform, &mut SampledMotion)>,
-) {
-    clock.looping = false;
-    for (place, mut motion) in &mut things {
-        motion.note_moves(place);
-    }
-}
-
-/// Finds out where things are at both ends of the step.
-pub(crate) fn sample_motion(
-    mut clock: ResMut<FrameClock>,
-    step: Res<ClothStep>,
-    (time, fixed): (Option<Res<Time<Virtual>>>, Option<Res<Time<Fixed>>>),
-    settings: Res<ClothSettings>,
-    helper: TransformHelper,
-    mut things: Query<(Entity, &Transform, Option<&ChildOf>, &mut SampledMotion)>,
-    mut messages: MessageWriter<Teleported>,
-) {
-    clock.step += 1;
-    if let (Some(time), Some(fixed)) = (time, fixed) {
-        clock.moment = clock.moment_at(time.elapsed().saturating_sub(fixed.overstep()));
-    }
-    let FrameClock {
-        looping,
-        moment,
-        step: number,
-        ..
-    } = *clock;
-    let speed = settings.valid_teleport_speed();
-    for (entity, place, child, mut motion) in &mut things {
-        let parent = child.map(ChildOf::parent);
-        let known = motion.step + 1 == number && motion.parent == parent;
-        motion.step = number;
-        if !known {
-            motion.restart(place, parent);
-        }
-        motion.from = motion.now;
-        motion.teleported = std::mem::take(&mut motion.hopped);
-        if looping {
-            motion.fixed = motion.fixed.map(|steps| steps.saturating_sub(1));
-            motion.note_moves(place);
-        } else {
-            motion.fixed = [LAPSE; 3];
-        }
-        let mut now = between(&motion.frames, &moment);
-        let [translation, rotation, scale] = motion.fixed.map(|steps| steps > 0);
-        if translation {
-            now.translation = place.translation;
-        }
-        if rotation {
-            now.rotation = place.rotation;
-        }
-        if scale {
-            now.scale = place.scale;
-        }
-        let told = std::mem::take(&mut motion.asked);
-        if told {
-            now = *place;
-            motion.from = now;
-            motion.frames = [now; DEPTH];
-        } else if translation {
-            let from = motion.from;
-            let metre = metre_of(
-                parent.filter(|_| from.translation != now.translation),
-                &helper,
-            );
-            let limits = [step.world_seconds(), speed, metre];
-            if let Some(start) = motion.hops.came_from([&from, &now], limits) {
-                motion.from = start;
-                motion.teleported = true;
-            }
-        }
-        motion.now = now;
-        if told || motion.teleported {
-            motion.teleported = true;
-            messages.write(Teleported { entity, told });
         }
     }
 }

@@ -1,30 +1,30 @@
-//! Where things are at both ends of a step.
+//! Poses of entities at both ends of a step.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_transform::components::{GlobalTransform, Transform};
 
-use super::SampledMotion;
+use super::ClothSampledMotion;
 
 /// Computes where entities are at both ends of the step: the one place that cloths, holders, colliders and zones are read from.
 #[derive(SystemParam)]
-pub struct SampledPoses<'w, 's> {
+pub struct ClothSampledPoses<'w, 's> {
     parents: Query<'w, 's, &'static ChildOf>,
-    places: Query<'w, 's, (&'static Transform, Option<&'static SampledMotion>)>,
+    places: Query<'w, 's, (&'static Transform, Option<&'static ClothSampledMotion>)>,
 }
 
-/// Where an entity is at both ends of a step, in the world.
+/// Poses of an entity at both ends of a step, in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampledPose {
-    /// At its start; where that is not where the last step ended, the way between is not felt.
+    /// Pose at its start; if the last step ended elsewhere, the displacement between is not felt.
     pub start: GlobalTransform,
-    /// At its end.
+    /// Pose at its end.
     pub end: GlobalTransform,
-    /// Whether it, or a parent, was put elsewhere.
+    /// True if it, or a parent, was put elsewhere.
     pub teleported: bool,
 }
 
-impl SampledPoses<'_, '_> {
-    /// Where an entity is.
+impl ClothSampledPoses<'_, '_> {
+    /// Poses of an entity.
     ///
     /// # Errors
     /// The entity, it or a parent, that has no `Transform` or does not exist.

@@ -2,52 +2,13 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use bevy_reflect::prelude::*;
 use tailorbird_solver::particles::{Particles, State};
 
-use super::{ClothRest, ClothSleep};
+use super::{ClothSeen, ClothSleep, ClothSleepState, Unseen};
 use crate::{
-    attachment::AttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
+    attachment::ClothAttachedParticles, bounds::ClothBounds, cloth::Cloth, frame::ClothFrame,
     motion::ClothMotionTargets, normals::ClothNormals, particles::ClothParticles, step::ClothStep,
 };
-
-/// Whether somebody sees the cloth: its picture, or its shadow.
-///
-/// Whoever draws cloth says so, here: `tailorbird` does where Bevy draws it; without that, all cloths are seen. It matters where
-/// [`ClothSleep::unseen`] is set.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-#[reflect(Component, Default)]
-pub struct ClothSeen(pub bool);
-
-impl Default for ClothSeen {
-    fn default() -> Self {
-        Self(true)
-    }
-}
-
-/// Whether a cloth sleeps because nobody sees it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-pub(super) enum Unseen {
-    /// It is seen, or sleeps for other reasons alone.
-    #[default]
-    No,
-    /// After this step it was seen no more.
-    Since(u64),
-    /// The same, and it is to take one step all the same.
-    Touched(u64),
-    /// It is seen again in this step, or takes one.
-    Back,
-}
-
-impl Unseen {
-    /// What becomes of it where something happened to the cloth.
-    pub fn touched(self) -> Self {
-        match self {
-            Self::Since(step) => Self::Touched(step),
-            same => same,
-        }
-    }
-}
 
 /// Lets cloths sleep that nobody sees, and wakes those that somebody sees again.
 pub fn rest_unseen(
@@ -56,7 +17,7 @@ pub fn rest_unseen(
         (
             &ClothSleep,
             &ClothSeen,
-            &mut ClothRest,
+            &mut ClothSleepState,
             &mut ClothFrame,
             Has<ClothMotionTargets>,
         ),
@@ -75,9 +36,10 @@ pub fn rest_unseen(
             same => same,
         };
         if unseen != rest.unseen {
-            *rest = ClothRest {
+            *rest = ClothSleepState {
                 unseen,
-                ..ClothRest::default()
+                settings: rest.settings,
+                ..ClothSleepState::default()
             };
             frame.bypass_change_detection().carries = rest.is_unseen();
         }
@@ -89,9 +51,9 @@ pub fn carry_unseen(
     step: Res<ClothStep>,
     mut cloths: Query<
         (
-            &ClothRest,
+            &ClothSleepState,
             &ClothFrame,
-            &AttachedParticles,
+            &ClothAttachedParticles,
             &mut ClothParticles,
             &mut ClothNormals,
             &mut ClothBounds,

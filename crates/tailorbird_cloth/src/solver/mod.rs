@@ -1,4 +1,4 @@
-//! How accurate cloth is, and what that costs: two solvers. The systems of a substep are here, what they do is in the crate `tailorbird_solver`.
+//! Accuracy of cloth, and its cost: two solvers. The systems of a substep are here, their arithmetic is in the crate `tailorbird_solver`.
 //!
 //! ```
 //! # use bevy_ecs::prelude::*;
@@ -23,26 +23,26 @@
 //! | 128², hanging by two corners, one thread | 1.5 ms a step; 0.011 % in the mean, 0.09 % at 99 % | 15.6 ms; 9.4 %, 94 % |
 //! | substeps unless set | 6 to 16, by the resolution: [`ClothSolver::substeps`] | 16 |
 //! | stiffness and resolution | stretch is that of the fabric; shear and bending up to a [limit](crate::material) | softer with every particle |
-//! | tethers to the pins, viscosity, calming of knots | yes | no |
+//! | tethers to the pins, viscosity, damping of tangles | yes | no |
 //! | heavy bodies of a physics engine | carried | fall through |
 //! | asked for more than the cloth has | stretches, and lies still | the same |
 //!
 //! The figures are the README's (AVX-512; rigid threads, `cargo run --release -p tailorbird_cloth --example bench -- hang`).
 //!
-//! The classic solver is there to compare with, and for what is meant to stretch like rubber.
+//! The classic solver is there to compare with, and for cloth that is meant to stretch like rubber.
 //!
 //! # More than the cloth has
 //!
-//! Clips farther apart than the way between them along the cloth, a tube that is too tight, a ball that is pushed through a net, a solid
+//! Clips farther apart than the path between them along the cloth, a tube that is too tight, a ball that is pushed through a net, a solid
 //! put into a curtain: no shape of a cloth that hardly stretches meets that. It stretches as evenly as it can (a few edges around a solid
 //! that stays inside by many times their length), lies still, and is whole
-//! again when the demand ends, without flying about. [`ClothStatus::strained`](crate::error::ClothStatus::strained) tells which part of
-//! its edges is longer than the fabric lets them be; one line is logged.
+//! again when the demand ends, without flying about. [`ClothStatus::strained`](crate::error::ClothStatus::strained) is the part of
+//! its edges that is longer than the fabric allows; one line is logged.
 //!
 //! # Substeps
 //!
 //! One pass over the constraints in each of several substeps: at equal cost that stretches less than many passes in few. The error falls
-//! with the square of the substep, the cost grows in proportion. What is calm needs the number that is chosen; a hard gust, a heavy body, a
+//! with the square of the substep, the cost grows in proportion. A calm cloth needs the number that is chosen; a hard gust, a heavy body, a
 //! snatch need more ([`ClothSettings::substeps`](crate::settings::ClothSettings::substeps), for all cloths; 16 and 32 are usual). Storms,
 //! a hand and bodies that lie on the cloth raise it by themselves, up to [`ClothSettings::most_substeps`](crate::settings::ClothSettings::most_substeps).
 //!
@@ -52,22 +52,15 @@
 //! them. The method and its limits are explained
 //! [beside the kernels](https://github.com/tailorbird/tailorbird/blob/main/crates/tailorbird_solver/src/kernels/README.md).
 
+mod stages;
+
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::{
-    coefficients::Method,
-    step::{CALM, INTEGRATE, SOLVE},
-    topology::Topology,
-};
+use tailorbird_solver::{coefficients::Method, topology::Topology};
 
-use crate::{
-    cloth::Cloth,
-    collider::ClothColliders,
-    stages::{ClothStages, run_stage},
-    step::ClothStep,
-};
+pub use stages::{calm_knots, solve_constraints, verlet_step};
 
-/// How the constraints of a cloth are solved.
+/// Method by which the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -81,8 +74,19 @@ pub enum ClothSolver {
     GaussSeidel,
 }
 
+/// The number of substeps of a cloth, in place of [`ClothSettings::substeps`](crate::settings::ClothSettings::substeps) and of as many as it
+/// needs: fewer for one far away, more for one that must not stretch. Optional; 0 counts as 1.
+///
+/// If a game has systems of its own in [`ClothSubstep`](crate::schedule::ClothSubstep), all cloths take as many as the one that takes
+/// most.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+pub struct ClothSubsteps(pub u32);
+
 impl ClothSolver {
-    /// How many substeps a cloth needs in a step of 1/60 s.
+    /// Number of substeps that a cloth needs in a step of 1/60 s.
     ///
     /// [`Chains`](Self::Chains): a 24th of the particles along the longer side, 8 to 16, and 6 where that has 36 or less; even.
     /// Fewer do for a sheet that hangs, and not for one that is pulled or blown about. Of a mesh that is no grid a 16th of
@@ -91,7 +95,7 @@ impl ClothSolver {
     pub fn substeps(self, topology: &Topology) -> u32 {
         match self {
             Self::Chains => {
-                let needed = if let Some(lattice) = topology.lattice {
+                let needed = if let Some(lattice) = topology.lattice() {
                     let side = lattice.columns.max(lattice.rows);
                     let least = if side <= 36 { 6 } else { 8 };
                     side.div_ceil(24).max(least)
@@ -106,7 +110,7 @@ impl ClothSolver {
         }
     }
 
-    /// The same for the solver.
+    /// Method for the solver.
     pub(crate) fn method(self) -> Method {
         match self {
             Self::Chains => Method::Lines,
@@ -114,41 +118,14 @@ impl ClothSolver {
         }
     }
 
-    /// How many a cloth needs at least while a hand holds it: what a hand can lift in a substep is what a stretch of a tenth of an edge
-    /// pulls, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
+    /// Least number of substeps of a cloth while a hand holds it: the hand may stretch an edge by a tenth, which bounds its force in a
+    /// substep, and the weight of the sheet has to follow. A fifth of the particles along the longer side, at most 32; even.
     pub(crate) fn substeps_in_hand(self, topology: &Topology) -> u32 {
-        let side = match (self, topology.lattice) {
+        let side = match (self, topology.lattice()) {
             (Self::GaussSeidel, _) => 0,
             (Self::Chains, Some(lattice)) => lattice.columns.max(lattice.rows),
             (Self::Chains, None) => (topology.particles() as f32).sqrt().ceil() as u32,
         };
         side.div_ceil(5).next_multiple_of(2).min(32)
     }
-}
-
-/// Moves particles by inertia, gravity, wind and forces; pins and the grabbed particle towards their targets.
-pub fn verlet_step(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(INTEGRATE, &step, &colliders, &mut cloths);
-}
-
-/// Holds the constraints, as the cloth's [`ClothSolver`] says, [`ClothStep::iterations`] times.
-///
-/// [`ClothSolver::GaussSeidel`] goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
-/// relaxation, the others as XPBD.
-pub fn solve_constraints(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(SOLVE, &step, &colliders, &mut cloths);
-}
-
-/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`].
-pub fn calm_knots(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(CALM, &step, &colliders, &mut cloths);
 }

@@ -12,46 +12,46 @@ use tailorbird_solver::{
     },
     particles::{Input, Particles, Scratch, State},
     points::Points,
-    wind::{WAVES, Wave, WindShape, sine, strength},
+    wind::{WAVES, Wave, WindRegion, sine, strength},
     workers::Workers,
 };
 use tracing::error;
 
-use super::{Turbulence, Wind, WindModel, WindZone, zone::is_whole_in};
+use super::{ClothTurbulence, ClothWind, ClothWindModel, ClothWindZone, zone::is_whole_in};
 use crate::{
     bounds::ClothBounds,
     cloth::Cloth,
-    error::{ClothStatus, ErrorSource},
+    error::{ClothErrorSource, ClothStatus},
     frame::{ClothFrame, split},
-    sampling::SampledPoses,
+    sampling::ClothSampledPoses,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
     step::ClothStep,
 };
 
-/// The air in this step: the [`Wind`] and all [`WindZone`]s. Written by [`prepare_wind`] alone.
+/// The air in this step: the [`ClothWind`] and all [`ClothWindZone`]s. Written by [`prepare_wind`] alone.
 #[derive(Resource, Clone, Debug, Default)]
-pub struct BlowingWind {
+pub struct ClothWindState {
     /// The last valid one.
-    valid: Wind,
+    valid: ClothWind,
     /// First the wind, then the zones in the order of their entities.
     sources: Vec<Source>,
 }
 
-/// What blows somewhere.
+/// A wind or a zone that blows in this step.
 #[derive(Clone, Debug)]
 struct Source {
     /// The zone's.
     entity: Option<Entity>,
-    shape: WindShape,
+    shape: WindRegion,
     falloff: f32,
-    /// Where it is in the world.
+    /// Pose in the world.
     at: Isometry3d,
-    /// In world axes [m/s].
+    /// Velocity in world axes [m/s].
     velocity: Vec3,
-    turbulence: Turbulence,
-    /// Of its turbulence, in its own axes; amplitudes are 0 where there is none.
+    turbulence: ClothTurbulence,
+    /// Waves of its turbulence, in its own axes; amplitudes are 0 without any.
     waves: [Wave; WAVES],
-    /// How far it has carried its eddies, in its own axes \[m\].
+    /// Displacement of its eddies, in its own axes \[m\].
     drift: DVec3,
 }
 
@@ -59,17 +59,17 @@ impl Source {
     fn new(entity: Option<Entity>) -> Self {
         Self {
             entity,
-            shape: WindShape::Everywhere,
+            shape: WindRegion::Everywhere,
             falloff: 0.0,
             at: Isometry3d::IDENTITY,
             velocity: Vec3::ZERO,
-            turbulence: Turbulence::default(),
+            turbulence: ClothTurbulence::default(),
             waves: [Wave::default(); WAVES],
             drift: DVec3::ZERO,
         }
     }
 
-    fn swirl(&mut self, turbulence: Turbulence, mean: Vec3, step: &ClothStep) {
+    fn swirl(&mut self, turbulence: ClothTurbulence, mean: Vec3, step: &ClothStep) {
         self.turbulence = turbulence;
         if turbulence.is_some() {
             self.waves = turbulence.waves(step.elapsed(), self.drift);
@@ -103,12 +103,12 @@ impl Source {
         numbers(hasher, &Vec3::from(self.at.translation).to_array());
         numbers(hasher, &self.at.rotation.to_array());
         let size = match self.shape {
-            WindShape::Everywhere => Vec3::ZERO,
-            WindShape::Cuboid { half_size } => half_size,
-            WindShape::Sphere { radius } => Vec3::splat(-radius),
+            WindRegion::Everywhere => Vec3::ZERO,
+            WindRegion::Cuboid { half_size } => half_size,
+            WindRegion::Sphere { radius } => Vec3::splat(-radius),
         };
         numbers(hasher, &size.to_array());
-        let Turbulence { speed, scale, seed } = self.turbulence;
+        let ClothTurbulence { speed, scale, seed } = self.turbulence;
         numbers(hasher, &[self.falloff, speed, scale]);
         seed.hash(hasher);
         if self.turbulence.is_some() {
@@ -123,10 +123,10 @@ impl Source {
 /// not blow.
 pub fn prepare_wind(
     step: Res<ClothStep>,
-    wind: Res<Wind>,
-    poses: SampledPoses,
-    mut blowing: ResMut<BlowingWind>,
-    mut zones: Query<(Entity, Ref<WindZone>, &mut ClothStatus)>,
+    wind: Res<ClothWind>,
+    poses: ClothSampledPoses,
+    mut blowing: ResMut<ClothWindState>,
+    mut zones: Query<(Entity, Ref<ClothWindZone>, &mut ClothStatus)>,
     commands: ParallelCommands,
 ) {
     if wind.is_changed() {
@@ -138,7 +138,7 @@ pub fn prepare_wind(
             blowing.valid.clone_from(&wind);
         }
     }
-    let BlowingWind { valid, sources } = &mut *blowing;
+    let ClothWindState { valid, sources } = &mut *blowing;
     if sources.is_empty() {
         sources.push(Source::new(None));
     }
@@ -148,7 +148,13 @@ pub fn prepare_wind(
     for (entity, zone, mut status) in &mut zones {
         if zone.is_changed() {
             let errors = zone.errors();
-            ClothStatus::update(&mut status, entity, &commands, ErrorSource::Wind, errors);
+            ClothStatus::update(
+                &mut status,
+                entity,
+                &commands,
+                ClothErrorSource::ClothWind,
+                errors,
+            );
         }
         let Ok(place) = poses.get(entity).map(|pose| split(&pose.end)) else {
             continue;
@@ -158,11 +164,11 @@ pub fn prepare_wind(
             &mut status,
             entity,
             &commands,
-            ErrorSource::Transform,
+            ClothErrorSource::Transform,
             error,
         );
         let Ok((at, scale)) = place else { continue };
-        if !status.is_ok_for(ErrorSource::Wind) {
+        if !status.is_ok_for(ClothErrorSource::ClothWind) {
             continue;
         }
         let known = sources[blows..]
@@ -175,7 +181,7 @@ pub fn prepare_wind(
         sources.swap(blows, index);
         let source = &mut sources[blows];
         let gusty = zone.gusts.vary(zone.velocity, step.elapsed());
-        source.shape = zone.shape.scaled(scale);
+        source.shape = zone.shape.region(scale);
         source.falloff = zone.falloff;
         source.at = at;
         source.velocity = at.rotation * gusty;
@@ -189,7 +195,7 @@ pub fn prepare_wind(
 /// Adds the acceleration by the wind, once per step.
 pub fn apply_wind(
     step: Res<ClothStep>,
-    wind: Res<BlowingWind>,
+    wind: Res<ClothWindState>,
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
     for_each_awake(&step, &mut cloths, &|mut cloth| {
@@ -203,7 +209,7 @@ fn ball(frame: &ClothFrame, bounds: &ClothBounds) -> (Vec3, f32) {
     (frame.to_world(middle), bounds.max.distance(middle))
 }
 
-impl BlowingWind {
+impl ClothWindState {
     /// The velocity of the air at a place in the world, in world axes [m/s]: for whatever else the wind moves.
     pub fn velocity_at(&self, point: Vec3) -> Vec3 {
         self.sources
@@ -220,7 +226,7 @@ impl BlowingWind {
         })
     }
 
-    /// What tells the air around a cloth from another.
+    /// Number that tells the air around a cloth from another.
     pub(crate) fn kind(&self, frame: &ClothFrame, bounds: &ClothBounds) -> u64 {
         let mut hasher = DefaultHasher::new();
         self.valid.model.hash(&mut hasher);
@@ -231,14 +237,14 @@ impl BlowingWind {
         hasher.finish()
     }
 
-    /// What [`apply_wind`] does to one cloth.
+    /// Runs [`apply_wind`] for one cloth.
     pub(crate) fn blow(&self, step: &ClothStep, workers: Workers, cloth: &mut ClothStagesItem) {
         let (model, density) = (self.valid.model, self.valid.air_density);
         let (topology, material, frame) = (cloth.topology, cloth.material, &*cloth.frame);
         if cloth.particles.is_empty() || !material.errors().is_empty() {
             return;
         }
-        if density == 0.0 && model == WindModel::Aerodynamic {
+        if density == 0.0 && model == ClothWindModel::Aerodynamic {
             return;
         }
         let ball = ball(frame, &cloth.bounds);
@@ -253,7 +259,7 @@ impl BlowingWind {
                 varies = true;
             }
         }
-        if model == WindModel::Classic {
+        if model == ClothWindModel::Classic {
             velocity = self.velocity_at(ball.0);
             varies = false;
             if velocity == Vec3::ZERO {
@@ -326,7 +332,7 @@ impl BlowingWind {
             seconds: step.seconds(),
         };
         // The cells of a mesh are cut in its own way.
-        if let (Some(lattice), Some(_)) = (&topology.lattice, topology.grid) {
+        if let Some(lattice) = topology.grid_lattice() {
             let sheet = AirSheet {
                 lattice,
                 position,
@@ -335,8 +341,8 @@ impl BlowingWind {
                 acceleration: SharedPoints::new(acceleration),
             };
             workers.share(0..lattice.rows as usize, |rows| match model {
-                WindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
-                WindModel::Aerodynamic => {
+                ClothWindModel::Classic => aerodynamics::classic_on_sheet(level, sheet, wind, rows),
+                ClothWindModel::Aerodynamic => {
                     aerodynamics::drag_and_lift_on_sheet(level, sheet, air, per_second, rows);
                 }
             });
@@ -344,10 +350,10 @@ impl BlowingWind {
         }
         let triangles = &topology.triangles;
         match model {
-            WindModel::Classic => {
+            ClothWindModel::Classic => {
                 aerodynamics::classic(triangles, wind, position, inv_mass, acceleration);
             }
-            WindModel::Aerodynamic => {
+            ClothWindModel::Aerodynamic => {
                 aerodynamics::drag_and_lift(
                     triangles,
                     &topology.triangle_areas,
@@ -364,7 +370,7 @@ impl BlowingWind {
 }
 
 impl Source {
-    /// The same in the axes of a cloth's frame; at full strength everywhere where it is `whole`.
+    /// Breeze in the axes of a cloth's frame; at full strength everywhere if it is `whole`.
     fn breeze(&self, frame: &ClothFrame, whole: bool) -> Breeze {
         let frame = frame.isometry();
         let to_own = self.at.inverse() * frame;
@@ -383,7 +389,7 @@ impl Source {
             velocity: frame.rotation.inverse() * self.velocity,
             waves: self.turbulence.is_some().then_some(waves),
             shape: if whole {
-                WindShape::Everywhere
+                WindRegion::Everywhere
             } else {
                 self.shape
             },

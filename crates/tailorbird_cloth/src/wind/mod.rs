@@ -1,9 +1,9 @@
-//! Moving air: one [`Wind`] in the whole world, and [`WindZone`]s that add to it. Each has gusts, which vary in time, and
+//! Moving air: one [`ClothWind`] in the whole world, and [`ClothWindZone`]s that add to it. Each has gusts, which vary in time, and
 //! turbulence, which varies in space as well. Both depend on simulated time alone, so that they are the same at any frame rate.
 //!
 //! ![A curtain before a fan that turns to and fro](https://raw.githubusercontent.com/tailorbird/tailorbird/main/assets/pictures/gallery/fan.gif)
 //!
-//! [`BlowingWind::velocity_at`] tells where the air goes, for what else is to move with it.
+//! [`ClothWindState::velocity_at`] tells where the air goes, for what else is to move with it.
 //!
 //! Air that is the same everywhere in a cloth costs least. Turbulence is summed up for each particle once in a step (`bench -- kernels`:
 //! `turbulence`), and so are zones whose border a cloth crosses.
@@ -19,46 +19,46 @@ use crate::error::ClothErrorKind;
 mod blowing;
 mod zone;
 
-pub use blowing::{BlowingWind, apply_wind, prepare_wind};
-pub use tailorbird_solver::wind::{Turbulence, WindShape};
-pub use zone::WindZone;
+pub use blowing::{ClothWindState, apply_wind, prepare_wind};
+pub use tailorbird_solver::wind::ClothTurbulence;
+pub use zone::{ClothWindShape, ClothWindZone};
 
-/// The air around all cloths. Still air slows cloths as well: insert [`Wind::vacuum`] to have none.
+/// The air around all cloths. Still air slows cloths as well: insert [`ClothWind::vacuum`] to have none.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-pub struct Wind {
+pub struct ClothWind {
     /// Mean velocity of the air [m/s].
     pub velocity: Vec3,
-    /// How it varies.
-    pub gusts: Gusts,
-    /// How it swirls.
-    pub turbulence: Turbulence,
-    /// How it pushes.
-    pub model: WindModel,
+    /// Variation in time.
+    pub gusts: ClothGusts,
+    /// Turbulence.
+    pub turbulence: ClothTurbulence,
+    /// Model of its push.
+    pub model: ClothWindModel,
     /// Density of the air [kg/m³]: 1.225 at sea level and 15 °C.
     pub air_density: f32,
 }
 
-/// How the wind varies in time. The same at every run: it depends on simulated time alone.
+/// Variation of the wind in time. The same at every run: it depends on simulated time alone.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-pub struct Gusts {
+pub struct ClothGusts {
     /// Largest change of the wind's speed, as a fraction of its mean [-]; 0 is a steady wind.
     pub strength: f32,
     /// Time between gusts \[s\].
     pub period: f32,
 }
 
-/// How the wind pushes on a triangle.
+/// Model of the wind's push on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-pub enum WindModel {
+pub enum ClothWindModel {
     /// Drag and lift of a flat plate in the air that flows past it, `½ ρ A |u|² …`, with the coefficients of
     /// [`ClothMaterial`](crate::material::ClothMaterial). Takes the motion of the cloth into account: it cannot get faster than the wind.
     #[default]
@@ -69,19 +69,19 @@ pub enum WindModel {
     Classic,
 }
 
-impl Default for Wind {
+impl Default for ClothWind {
     fn default() -> Self {
         Self {
             velocity: Vec3::ZERO,
-            gusts: Gusts::default(),
-            turbulence: Turbulence::default(),
-            model: WindModel::Aerodynamic,
+            gusts: ClothGusts::default(),
+            turbulence: ClothTurbulence::default(),
+            model: ClothWindModel::Aerodynamic,
             air_density: 1.225,
         }
     }
 }
 
-impl Default for Gusts {
+impl Default for ClothGusts {
     fn default() -> Self {
         Self {
             strength: 0.0,
@@ -90,7 +90,7 @@ impl Default for Gusts {
     }
 }
 
-impl Wind {
+impl ClothWind {
     /// A steady wind [m/s].
     pub fn steady(velocity: Vec3) -> Self {
         Self {
@@ -107,18 +107,18 @@ impl Wind {
         }
     }
 
-    /// The mean velocity of the air at a time \[s\], without turbulence, in world axes [m/s]: see [`Gusts::vary`].
+    /// The mean velocity of the air at a time \[s\], without turbulence, in world axes [m/s]: see [`ClothGusts::vary`].
     pub fn velocity_at(&self, seconds: f64) -> Vec3 {
         self.gusts.vary(self.velocity, seconds)
     }
 
-    /// What is wrong with this wind.
+    /// Errors of this wind.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
         [
-            ClothErrorKind::vector("Wind.velocity", self.velocity),
+            ClothErrorKind::vector("ClothWind.velocity", self.velocity),
             ClothErrorKind::number(
-                "Wind.air_density",
+                "ClothWind.air_density",
                 self.air_density,
                 not_negative,
                 "at least 0 and finite [kg/m³]",
@@ -128,18 +128,18 @@ impl Wind {
         .flatten()
         .chain(
             self.gusts
-                .errors(["Wind.gusts.strength", "Wind.gusts.period"]),
+                .errors(["ClothWind.gusts.strength", "ClothWind.gusts.period"]),
         )
         .chain(turbulence_errors(
             &self.turbulence,
-            ["Wind.turbulence.speed", "Wind.turbulence.scale"],
+            ["ClothWind.turbulence.speed", "ClothWind.turbulence.scale"],
         ))
         .collect()
     }
 }
 
-impl Gusts {
-    /// How a mean velocity [m/s] varies in time: its value after so many seconds.
+impl ClothGusts {
+    /// Mean velocity [m/s] after so many seconds of variation in time.
     ///
     /// A gust is a sum of sines whose periods have no common multiple. It changes the speed by at most
     /// [`strength`](Self::strength) and swings the direction by at most half of that (in radians), about the axis that is
@@ -166,7 +166,7 @@ impl Gusts {
         turned * (1.0 + strength * speed).max(0.0)
     }
 
-    /// What is wrong with them; `fields` names strength and period.
+    /// Errors of these gusts; `fields` names strength and period.
     pub(crate) fn errors(&self, fields: [&'static str; 2]) -> impl Iterator<Item = ClothErrorKind> {
         let strength = |v: f32| v >= 0.0 && v.is_finite();
         let period = |v: f32| v > 0.0 && v.is_finite();
@@ -184,9 +184,9 @@ impl Gusts {
     }
 }
 
-/// What is wrong with turbulence; `fields` names its speed and its scale.
+/// Errors of turbulence; `fields` names its speed and its scale.
 fn turbulence_errors(
-    turbulence: &Turbulence,
+    turbulence: &ClothTurbulence,
     fields: [&'static str; 2],
 ) -> impl Iterator<Item = ClothErrorKind> {
     let speed = |v: f32| v >= 0.0 && v.is_finite();

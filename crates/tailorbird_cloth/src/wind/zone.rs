@@ -4,15 +4,15 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
-use tailorbird_solver::wind::WindShape;
+use tailorbird_solver::wind::WindRegion;
 
-use super::{Gusts, Turbulence, turbulence_errors};
+use super::{ClothGusts, ClothTurbulence, turbulence_errors};
 use crate::{
     error::{ClothErrorKind, ClothStatus},
-    sampling::SampledMotion,
+    sampling::ClothSampledMotion,
 };
 
-/// Air that moves in a part of the world, which is added to [`Wind`](super::Wind) and to other zones there. It moves, turns and grows with its
+/// Air that moves in a part of the world, which is added to [`ClothWind`](super::ClothWind) and to other zones there. It moves, turns and grows with its
 /// entity, and `velocity` and turbulence turn with it.
 ///
 /// ```
@@ -22,10 +22,10 @@ use crate::{
 /// # use tailorbird_cloth::prelude::*;
 /// fn fan(mut commands: Commands) {
 ///     commands.spawn((
-///         WindZone {
+///         ClothWindZone {
 ///             falloff: 0.5,
-///             turbulence: Turbulence { speed: 1.0, scale: 0.5, ..Turbulence::default() },
-///             ..WindZone::cuboid(Vec3::new(1.0, 1.0, 3.0), Vec3::Z * 6.0)
+///             turbulence: ClothTurbulence { speed: 1.0, scale: 0.5, ..ClothTurbulence::default() },
+///             ..ClothWindZone::cuboid(Vec3::new(2.0, 2.0, 6.0), Vec3::Z * 6.0)
 ///         },
 ///         Transform::from_xyz(0.0, 1.0, -3.0),
 ///     ));
@@ -38,100 +38,141 @@ use crate::{
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-#[require(Transform, ClothStatus, SampledMotion)]
-pub struct WindZone {
-    /// Where it blows.
-    pub shape: WindShape,
+#[require(Transform, ClothStatus, ClothSampledMotion)]
+pub struct ClothWindZone {
+    /// Region in which it blows.
+    pub shape: ClothWindShape,
     /// Mean velocity of the air, along the entity's axes [m/s].
     pub velocity: Vec3,
     /// Width inside the border over which the wind rises from nothing to its full speed \[m\]; 0 is at once. Nothing outside moves.
     pub falloff: f32,
-    /// How it varies.
-    pub gusts: Gusts,
-    /// How it swirls.
-    pub turbulence: Turbulence,
+    /// Variation in time.
+    pub gusts: ClothGusts,
+    /// Turbulence.
+    pub turbulence: ClothTurbulence,
 }
 
-impl Default for WindZone {
+impl Default for ClothWindZone {
+    /// No wind in a sphere of 1 m.
     fn default() -> Self {
         Self {
-            shape: WindShape::Everywhere,
+            shape: ClothWindShape::default(),
             velocity: Vec3::ZERO,
             falloff: 0.0,
-            gusts: Gusts::default(),
-            turbulence: Turbulence::default(),
+            gusts: ClothGusts::default(),
+            turbulence: ClothTurbulence::default(),
         }
     }
 }
 
-impl WindZone {
-    /// A steady wind in the whole world [m/s].
-    pub fn everywhere(velocity: Vec3) -> Self {
+impl ClothWindZone {
+    /// A steady wind in a box with these sides \[m\] [m/s]. Wind in the whole world is [`ClothWind`](super::ClothWind).
+    pub fn cuboid(size: Vec3, velocity: Vec3) -> Self {
         Self {
+            shape: ClothWindShape::Cuboid { size },
             velocity,
             ..Self::default()
-        }
-    }
-
-    /// A steady wind in a box with these half sides \[m\] [m/s].
-    pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
-        Self {
-            shape: WindShape::Cuboid { half_size },
-            ..Self::everywhere(velocity)
         }
     }
 
     /// A steady wind in a sphere of this radius \[m\] [m/s].
     pub fn sphere(radius: f32, velocity: Vec3) -> Self {
         Self {
-            shape: WindShape::Sphere { radius },
-            ..Self::everywhere(velocity)
+            shape: ClothWindShape::Sphere { radius },
+            velocity,
+            ..Self::default()
         }
     }
 
-    /// What is wrong with this zone.
+    /// Errors of this zone.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
         let positive = |v: f32| v > 0.0 && v.is_finite();
         let not_negative = |v: f32| v >= 0.0 && v.is_finite();
         let size =
             |field, value| ClothErrorKind::number(field, value, positive, "above 0 and finite [m]");
         let shape = match self.shape {
-            WindShape::Everywhere => None,
-            WindShape::Cuboid { half_size } => {
-                let least = half_size.min_element();
-                let most = half_size.max_element();
+            ClothWindShape::Cuboid { size: sides } => {
+                let least = sides.min_element();
+                let most = sides.max_element();
                 size(
-                    "WindZone.shape.half_size",
+                    "ClothWindZone.shape.size",
                     if most.is_finite() { least } else { most },
                 )
             }
-            WindShape::Sphere { radius } => size("WindZone.shape.radius", radius),
+            ClothWindShape::Sphere { radius } => size("ClothWindZone.shape.radius", radius),
         };
         let falloff = ClothErrorKind::number(
-            "WindZone.falloff",
+            "ClothWindZone.falloff",
             self.falloff,
             not_negative,
             "at least 0 and finite [m]",
         );
         shape
             .into_iter()
-            .chain(ClothErrorKind::vector("WindZone.velocity", self.velocity))
+            .chain(ClothErrorKind::vector(
+                "ClothWindZone.velocity",
+                self.velocity,
+            ))
             .chain(falloff)
             .chain(
                 self.gusts
-                    .errors(["WindZone.gusts.strength", "WindZone.gusts.period"]),
+                    .errors(["ClothWindZone.gusts.strength", "ClothWindZone.gusts.period"]),
             )
             .chain(turbulence_errors(
                 &self.turbulence,
-                ["WindZone.turbulence.speed", "WindZone.turbulence.scale"],
+                [
+                    "ClothWindZone.turbulence.speed",
+                    "ClothWindZone.turbulence.scale",
+                ],
             ))
             .collect()
     }
 }
 
-/// How a wind of this shape meets a ball: not at all (`None`), in the same way everywhere, or not.
+/// Region in which a wind blows, in the entity's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[cfg_attr(feature = "serialize", serde(deny_unknown_fields))]
+pub enum ClothWindShape {
+    /// In a box around the entity.
+    Cuboid {
+        /// Its sides \[m\].
+        size: Vec3,
+    },
+    /// In a sphere around the entity.
+    Sphere {
+        /// \[m\]
+        radius: f32,
+    },
+}
+
+impl Default for ClothWindShape {
+    /// A sphere of 1 m.
+    fn default() -> Self {
+        Self::Sphere { radius: 1.0 }
+    }
+}
+
+impl ClothWindShape {
+    /// The same for the solver, as large as an entity of this scale makes it.
+    pub(super) fn region(self, scale: Vec3) -> WindRegion {
+        let scale = scale.abs();
+        match self {
+            Self::Cuboid { size } => WindRegion::Cuboid {
+                half_size: 0.5 * size * scale,
+            },
+            Self::Sphere { radius } => WindRegion::Sphere {
+                radius: radius * scale.max_element(),
+            },
+        }
+    }
+}
+
+/// Overlap of a wind of this shape with a ball: none (`None`), the same wind everywhere, or a varying one.
 pub(super) fn is_whole_in(
-    shape: WindShape,
+    shape: WindRegion,
     falloff: f32,
     at: Isometry3d,
     (center, radius): (Vec3, f32),

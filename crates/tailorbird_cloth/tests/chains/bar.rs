@@ -7,22 +7,22 @@ use tailorbird_test::{G, Scene, Sheet, rigid};
 const LENGTH: f32 = 1.0;
 const COLUMNS: u32 = 4;
 
-/// Whether waves across a strip of this length stay small. Tension T acts along the edges as they are predicted to lie, so that a
-/// wave of the shortest length goes as y' = (1 − κ) (2 y − y⁻) with κ = 4 h² T/(m L), which grows from κ = 4/3 on. At the
-/// clamp κ is 4 rows² g h²/length.
+/// Returns whether waves across a strip of this length stay small. Tension T acts along the edges as they are predicted to lie, so that a
+/// wave of the shortest length goes as y' = (1 − κ) (2 y − y⁻) with κ = 4 h² T/(m L), which grows from κ = 4/3 on. At the clamp κ is 4
+/// rows² g h²/length.
 fn is_stable(rows: u32, substeps: u32) -> bool {
     let seconds = 1.0 / (60.0 * substeps as f32);
     4.0 * (rows * rows) as f32 * G * seconds * seconds / LENGTH < 4.0 / 3.0
 }
 
-/// How much longer the strip gets \[m\]; the mean of its columns.
+/// Elongation of the strip \[m\]; the mean of its columns.
 fn elongation(rows: u32, substeps: u32, material: ClothMaterial) -> f64 {
     let across = LENGTH / (rows - 1) as f32 * (COLUMNS - 1) as f32;
     let mut strip = Sheet::new(&Scene {
         size: Vec2::new(across, LENGTH),
         resolution: UVec2::new(COLUMNS, rows),
         material,
-        pins: ClothPins::edges([GridEdge::Top]),
+        pins: ClothPins::edges([ClothEdge::Top]),
         gravity: Vec3::NEG_Y * G,
         substeps: Some(substeps),
         ..Scene::default()

@@ -22,12 +22,12 @@ fn every_instruction_set_gives_the_same_bits() {
                 assert_eq!(sheet.complaint(), None);
                 sheet.hash()
             };
-            let scalar = hash(InstructionSet::Scalar);
+            let scalar = hash(ClothInstructionSet::Scalar);
             for set in [
-                InstructionSet::Sse2,
-                InstructionSet::Avx2,
-                InstructionSet::Avx512,
-                InstructionSet::Auto,
+                ClothInstructionSet::Sse2,
+                ClothInstructionSet::Avx2,
+                ClothInstructionSet::Avx512,
+                ClothInstructionSet::Auto,
             ] {
                 assert_eq!(hash(set), scalar, "{name} {size}, {set:?}");
             }

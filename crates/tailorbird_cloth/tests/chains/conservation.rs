@@ -1,4 +1,4 @@
-//! What physics keeps: momentum of what is free, energy of what nothing drives.
+//! Conservation: momentum of free sheets, energy of sheets that nothing drives.
 
 use bevy_math::{DVec3, UVec2, Vec3};
 use tailorbird_cloth::prelude::*;
@@ -47,8 +47,8 @@ fn drift(viscosity: f32, substeps: u32) -> [f64; 2] {
     worst
 }
 
-/// What particles that turn at ω lose of their spin in a time t to substeps of length h is ½ ω² h t: a step along the tangent is
-/// pulled back to the circle along the new radius, which leaves it shorter.
+/// Particles that turn at ω lose ½ ω² h t of their spin in a time t to substeps of length h: a step along the tangent is pulled back to the
+/// circle along the new radius, which leaves it shorter.
 #[test]
 fn a_thrown_sheet_keeps_its_momentum_and_loses_no_more_spin_than_its_integrator_must() {
     for viscosity in [0.0, rigid().viscosity] {

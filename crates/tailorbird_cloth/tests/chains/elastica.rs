@@ -4,8 +4,8 @@ use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
 use tailorbird_test::{G, Scene, Sheet, rigid};
 
-/// How far the free end hangs below the clamp, by the length, where `weight` = σ g L³/B. Runge–Kutta, and the curvature at the
-/// clamp by bisection.
+/// Deflection of the free end below the clamp, by the length, for `weight` = σ g L³/B. Runge–Kutta, and the curvature at the clamp by
+/// bisection.
 pub fn elastica(weight: f64) -> f64 {
     let shoot = |curvature: f64| {
         let (mut angle, mut bend, mut droop) = (0.0_f64, curvature, 0.0);

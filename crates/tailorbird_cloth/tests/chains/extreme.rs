@@ -1,14 +1,14 @@
-//! What is extreme stays finite, and what is ordinary afterwards recovers.
+//! Extreme worlds stay finite, and recover when they become ordinary.
 
 use bevy_math::{UVec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
 use tailorbird_test::{G, Scene, Sheet, rigid};
 
-/// How a sheet comes out of it.
+/// State of a sheet afterwards.
 #[derive(Clone, Copy)]
 enum After {
-    /// As if nothing had been.
+    /// Well: the same as without it.
     Well,
     /// Finite and in one piece, but it may be wound up in itself, where rows and columns ask for opposite things, and then trembles, but does no more than that.
     Knotted,

@@ -32,7 +32,7 @@ fn shuffled() -> Cloth {
 
 fn upper_corners() -> ClothPins {
     let within = |center| {
-        ClothPin::new(PinSelection::Within {
+        ClothPin::new(ClothSelection::Within {
             center,
             radius: 1e-3,
         })
@@ -57,10 +57,10 @@ fn push(sheet: &mut Sheet, which: impl Fn(Vec3) -> bool) {
 #[test]
 fn a_shuffled_sheet_moves_as_the_grid_that_it_is() {
     let flat = Cloth::grid(Vec2::ONE, UVec2::splat(SIDE as u32));
-    let mut a = sheet(flat, ClothPins::corners(GridCorner::TOP));
+    let mut a = sheet(flat, ClothPins::corners(ClothCorner::TOP));
     let mut b = sheet(shuffled(), upper_corners());
-    assert!(b.get::<ClothTopology>().lattice.is_some());
-    assert!(b.get::<ClothTopology>().grid.is_none());
+    assert!(b.get::<ClothTopology>().lattice().is_some());
+    assert!(b.get::<ClothTopology>().grid().is_none());
     for sheet in [&mut a, &mut b] {
         push(sheet, |p| p.y < -0.99);
         sheet.steps(60);
@@ -134,9 +134,9 @@ fn irregular() -> Cloth {
 #[test]
 fn an_irregular_sheet_hangs_without_stretching() {
     let mut sheet = sheet(irregular(), upper_corners());
-    assert!(sheet.get::<ClothTopology>().fabric.is_some());
+    assert!(sheet.get::<ClothTopology>().fabric().is_some());
     push(&mut sheet, |p| p.y < -0.9);
-    let mut worst = Stretch::default();
+    let mut worst = ClothStretch::default();
     for _ in 0..180 {
         sheet.steps(1);
         let stretch = sheet.stretch();
@@ -220,7 +220,7 @@ fn a_rolled_sheet_keeps_its_shape_in_free_flight() {
         Cloth::mesh(positions.clone(), triangles.concat()),
         ClothPins::default(),
     );
-    assert!(sheet.get::<ClothTopology>().lattice.is_some());
+    assert!(sheet.get::<ClothTopology>().lattice().is_some());
     assert!(!sheet.get::<ClothTopology>().flat);
     sheet.settings(|settings| settings.gravity = Vec3::ZERO);
     sheet.steps(60);

@@ -1,4 +1,4 @@
-//! What a mesh must not do: lock where cloth gives way, or drape otherwise because it is cut otherwise.
+//! Faults that a mesh must not have: locking where cloth gives way, or draping that depends on how it is cut.
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
@@ -92,7 +92,7 @@ fn rim(n: usize) -> Vec<usize> {
     rim
 }
 
-/// How many maxima of a closed curve rise by `least` on both sides, and how much the swings between them are.
+/// Number of maxima of a closed curve that rise by `least` on both sides, and the swings between them.
 fn folds(values: &[f32], least: f32) -> (usize, f32) {
     let n = values.len();
     let start = (0..n)
@@ -122,7 +122,7 @@ fn folds(values: &[f32], least: f32) -> (usize, f32) {
     (count, mean)
 }
 
-/// How often a sheet folds is a matter of chance within some: the means over several places of the sphere agree.
+/// Number of folds of a sheet: a matter of chance within some, so that the means over several places of the sphere agree.
 #[test]
 fn folds_do_not_depend_on_how_the_sheet_is_cut() {
     let n = 48;

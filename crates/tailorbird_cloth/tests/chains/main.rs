@@ -14,6 +14,7 @@ mod locking;
 mod memory;
 mod meshes;
 mod stretch;
+mod substeps;
 
 #[path = "../../../tailorbird_solver/src/topology/test_meshes.rs"]
 mod test_meshes;

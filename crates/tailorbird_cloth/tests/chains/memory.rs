@@ -1,4 +1,4 @@
-//! What cloths take.
+//! Memory of cloths.
 
 use bevy_math::UVec2;
 use tailorbird_cloth::{prelude::*, tethers::ClothTethers};

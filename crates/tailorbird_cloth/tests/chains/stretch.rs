@@ -1,4 +1,4 @@
-//! How far a sheet that should not stretch does.
+//! Stretch of a sheet that should not stretch.
 
 use std::f32::consts::TAU;
 
@@ -9,12 +9,12 @@ use tailorbird_test::{G, Scene, Sheet};
 const SIZE: UVec2 = UVec2::splat(64);
 
 /// The largest of each figure over some steps; `before` is done before each of them.
-fn worst(sheet: &mut Sheet, steps: u32, mut before: impl FnMut(&mut Sheet, u32)) -> Stretch {
-    let mut worst = Stretch::default();
+fn worst(sheet: &mut Sheet, steps: u32, mut before: impl FnMut(&mut Sheet, u32)) -> ClothStretch {
+    let mut worst = ClothStretch::default();
     for step in 0..steps {
         before(sheet, step);
         sheet.step();
-        let Stretch { mean, p99, max } = sheet.stretch();
+        let ClothStretch { mean, p99, max } = sheet.stretch();
         worst.mean = worst.mean.max(mean);
         worst.p99 = worst.p99.max(p99);
         worst.max = worst.max.max(max);
@@ -24,7 +24,7 @@ fn worst(sheet: &mut Sheet, steps: u32, mut before: impl FnMut(&mut Sheet, u32))
 }
 
 /// Checks the mean and the 99 % against bounds.
-fn check(what: &str, is: Stretch, mean: f32, p99: f32) {
+fn check(what: &str, is: ClothStretch, mean: f32, p99: f32) {
     println!("{what}: {is:?}");
     assert!(is.mean <= mean && is.p99 <= p99, "{what}: {is:?}");
 }
@@ -38,16 +38,16 @@ fn a_hanging_sheet_hardly_stretches() {
     check("hang, last quarter", hanging, 1e-3, 1e-2);
 }
 
-/// Where forces are many times the weight, transverse waves outrun the eight substeps of a quiet sheet of this size.
+/// Substeps for forces of many times the weight: transverse waves then outrun the eight substeps of a quiet sheet of this size.
 const BUSY: Option<u32> = Some(16);
 
 #[test]
 fn a_sheet_in_a_storm_hardly_stretches() {
     // 20 m/s.
     let mut sheet = Sheet::new(&Scene {
-        pins: ClothPins::edges([GridEdge::Left]),
+        pins: ClothPins::edges([ClothEdge::Left]),
         gravity: Vec3::NEG_Y * G,
-        wind: Wind::steady(Vec3::new(19.0, 0.0, 6.2)),
+        wind: ClothWind::steady(Vec3::new(19.0, 0.0, 6.2)),
         substeps: BUSY,
         ..Scene::hang(SIZE)
     });
@@ -58,10 +58,10 @@ fn a_sheet_in_a_storm_hardly_stretches() {
 /// More while it blows, as many as before afterwards, and no more where the budget is 0.
 #[test]
 fn substeps_follow_a_storm() {
-    let storm = Wind::steady(Vec3::new(19.0, 0.0, 6.2));
+    let storm = ClothWind::steady(Vec3::new(19.0, 0.0, 6.2));
     for budget in [0, 500_000] {
         let mut sheet = Sheet::new(&Scene {
-            pins: ClothPins::edges([GridEdge::Left]),
+            pins: ClothPins::edges([ClothEdge::Left]),
             gravity: Vec3::NEG_Y * G,
             wind: storm.clone(),
             ..Scene::hang(SIZE)
@@ -75,7 +75,7 @@ fn substeps_follow_a_storm() {
             sheet.step();
             blown = blown.max(substeps(&sheet));
         }
-        sheet.sim.app.insert_resource(Wind::vacuum());
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
         sheet.steps(900);
         let after = substeps(&sheet);
         println!("budget {budget}: {calm}, {blown}, {after} substeps");

@@ -1,4 +1,4 @@
-//! What is wrong with a collider is told, with field, value and what is allowed.
+//! Errors of colliders are told, with field, value and the allowed range.
 
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3};
 use tailorbird_cloth::{collider::Compound, prelude::*};
@@ -15,7 +15,7 @@ fn wrong_measures_are_told() {
             "bottom_radius",
         ),
         (ClothCollider::tapered_capsule(1.0, -2.0, 1.0), "top_radius"),
-        (ClothCollider::cuboid(1.0, f32::INFINITY, 1.0), "half_size"),
+        (ClothCollider::cuboid(1.0, f32::INFINITY, 1.0), "size"),
         (ClothCollider::cylinder(1.0, 0.0), "half_height"),
         (ClothCollider::sphere(1.0).with_margin(-0.1), "margin"),
     ] {
@@ -66,10 +66,10 @@ fn wrong_data_makes_no_shape() {
     is(ClothCollider::compound([]), "EmptyCompound");
     let away = Isometry3d::from_translation(Vec3::NAN);
     is(
-        ClothCollider::compound([(away, ColliderShape::HalfSpace)]),
+        ClothCollider::compound([(away, ClothColliderShape::HalfSpace)]),
         "Vector",
     );
-    assert!(Compound::new([(Isometry3d::IDENTITY, ColliderShape::HalfSpace)]).is_ok());
+    assert!(Compound::new([(Isometry3d::IDENTITY, ClothColliderShape::HalfSpace)]).is_ok());
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
         ..Scene::default()
     });
     let entity = sheet.sim.spawn(());
-    let right = ColliderBody {
+    let right = ClothColliderBody {
         body: entity,
         inv_mass: Vec3::ONE,
         inv_inertia: Mat3::IDENTITY,
@@ -87,20 +87,20 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
         linear_velocity: Vec3::ZERO,
         angular_velocity: Vec3::ZERO,
     };
-    let push = |sheet: &mut Sheet, body: ColliderBody, at: Vec3| {
+    let push = |sheet: &mut Sheet, body: ClothColliderBody, at: Vec3| {
         for _ in 0..2 {
             let at = Isometry3d::from_translation(at);
-            let mut colliders = sheet.sim.resource_mut::<ExternalColliders>();
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
             colliders.push(external(
                 entity,
-                ColliderShape::Sphere { radius: 0.3 },
+                ClothColliderShape::Sphere { radius: 0.3 },
                 [at, at],
                 Some(body),
             ));
             sheet.steps(1);
         }
         let world = sheet.sim.app.world();
-        assert!(world.resource::<ExternalColliders>().is_empty());
+        assert!(world.resource::<ClothExternalColliders>().is_empty());
         let particles = world
             .get::<ClothParticles>(sheet.entity)
             .expect("particles");
@@ -110,12 +110,12 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
             s.errors().map(ToString::to_string).collect()
         })
     };
-    let nan = ColliderBody {
+    let nan = ClothColliderBody {
         inv_mass: Vec3::new(1.0, f32::NAN, 1.0),
         ..right
     };
     assert!(push(&mut sheet, nan, Vec3::ZERO).contains("inv_mass is [1, NaN, 1]"));
-    let wrong = ColliderBody {
+    let wrong = ClothColliderBody {
         inv_inertia: Mat3::IDENTITY * -1.0,
         ..right
     };

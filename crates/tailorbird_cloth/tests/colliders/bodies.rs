@@ -1,4 +1,4 @@
-//! What bodies get back.
+//! Reactions of bodies.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec3};
@@ -10,7 +10,7 @@ use tailorbird_test::{Scene, Sheet, external};
 #[derive(Clone)]
 pub struct Body {
     entity: Entity,
-    shape: ColliderShape,
+    shape: ClothColliderShape,
     mass: f32,
     /// About every axis [kg m²].
     inertia: f32,
@@ -25,7 +25,7 @@ impl Body {
     pub fn ball(sheet: &mut Sheet, mass: f32, radius: f32, at: Vec3, velocity: Vec3) -> Self {
         Self {
             entity: sheet.sim.spawn(()),
-            shape: ColliderShape::Sphere { radius },
+            shape: ClothColliderShape::Sphere { radius },
             mass,
             inertia: 0.4 * mass * radius * radius,
             at: Isometry3d::from_translation(at),
@@ -40,19 +40,22 @@ impl Body {
         let turn = |by: Vec3, q: Quat| (Quat::from_scaled_axis(by) * q).normalize();
         let center = Vec3::from(start.translation) + self.velocity * STEP;
         let end = Isometry3d::new(center, turn(self.spin * STEP, start.rotation));
-        sheet.sim.resource_mut::<ExternalColliders>().push(external(
-            self.entity,
-            self.shape.clone(),
-            [start, end],
-            Some(ColliderBody {
-                body: self.entity,
-                inv_mass: Vec3::splat(1.0 / self.mass),
-                inv_inertia: Mat3::from_diagonal(Vec3::splat(1.0 / self.inertia)),
-                center_of_mass: center,
-                linear_velocity: self.velocity,
-                angular_velocity: self.spin,
-            }),
-        ));
+        sheet
+            .sim
+            .resource_mut::<ClothExternalColliders>()
+            .push(external(
+                self.entity,
+                self.shape.clone(),
+                [start, end],
+                Some(ClothColliderBody {
+                    body: self.entity,
+                    inv_mass: Vec3::splat(1.0 / self.mass),
+                    inv_inertia: Mat3::from_diagonal(Vec3::splat(1.0 / self.inertia)),
+                    center_of_mass: center,
+                    linear_velocity: self.velocity,
+                    angular_velocity: self.spin,
+                }),
+            ));
         sheet.steps(1);
         self.at = end;
         let reactions = sheet.sim.resource::<ClothReactions>();
@@ -158,10 +161,10 @@ fn trampoline(gravity: Vec3) -> Sheet {
     Sheet::new(&Scene {
         resolution: UVec2::splat(33),
         pins: ClothPins::edges([
-            GridEdge::Top,
-            GridEdge::Bottom,
-            GridEdge::Left,
-            GridEdge::Right,
+            ClothEdge::Top,
+            ClothEdge::Bottom,
+            ClothEdge::Left,
+            ClothEdge::Right,
         ]),
         gravity,
         ..Scene::default()

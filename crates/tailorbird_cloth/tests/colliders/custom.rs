@@ -126,7 +126,7 @@ fn friction_is_that_of_the_crates_own_solids() {
     assert!(rough < 0.02, "{rough} m");
 }
 
-/// What moves takes along what lies on it.
+/// A moving surface takes along the cloth that lies on it.
 #[test]
 fn a_surface_that_moves_takes_cloth_along() {
     const SPEED: f32 = 0.5;

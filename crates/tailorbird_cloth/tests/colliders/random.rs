@@ -107,7 +107,7 @@ impl Convex {
         }
     }
 
-    /// How far a point is from the surface, negative inside \[m\].
+    /// Distance of a point from the surface, negative inside \[m\].
     fn distance(&self, p: DVec3) -> f64 {
         match self {
             Self::Sphere(radius) => p.length() - f64::from(*radius),
@@ -206,7 +206,7 @@ fn convex() -> impl Strategy<Value = Convex> {
                     .map(|p| squeeze * Vec3::from(p))
                     .collect();
                 let hull = ClothCollider::convex_hull(&points).ok()?;
-                let ColliderShape::ConvexHull(hull) = &hull.shape else {
+                let ClothColliderShape::ConvexHull(hull) = &hull.shape else {
                     return None;
                 };
                 (hull.volume() > 1e-5).then(|| Convex::Hull(points.clone(), faces(&points)))
@@ -219,7 +219,7 @@ fn convex() -> impl Strategy<Value = Convex> {
 #[derive(Clone, Debug)]
 struct Thing {
     shape: Convex,
-    /// How it is turned as the part of a compound, if it is one.
+    /// Rotation as the part of a compound, if it is one.
     part: Option<Quat>,
     margin: f32,
     friction: f32,
@@ -329,7 +329,7 @@ fn cloth() -> impl Strategy<Value = Cloth> {
     prop_oneof![grid, mesh]
 }
 
-/// What rounding leaves of coordinates of less than 8 m, after some additions \[m\].
+/// Tolerance for the rounding of coordinates of less than 8 m, after some additions \[m\].
 const ROUNDING: f64 = 5e-6;
 
 proptest! {

@@ -7,7 +7,7 @@ use tailorbird_test::{Scene, Sheet, external};
 
 use crate::shapes;
 
-fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
+fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]> {
     let mut sheet = Sheet::new(&Scene {
         resolution: UVec2::splat(40),
         substeps: Some(8),
@@ -31,22 +31,25 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
     let mut reactions = Vec::new();
     for _ in 0..40 {
         let at = Isometry3d::from_translation(Vec3::new(0.5, -0.5, -0.2));
-        sheet.sim.resource_mut::<ExternalColliders>().push(external(
-            entity,
-            ColliderShape::Capsule {
-                radius: 0.1,
-                half_length: 0.2,
-            },
-            [at, at],
-            Some(ColliderBody {
-                body: entity,
-                inv_mass: Vec3::splat(10.0),
-                inv_inertia: Mat3::IDENTITY * 1000.0,
-                center_of_mass: at.translation.into(),
-                linear_velocity: Vec3::ZERO,
-                angular_velocity: Vec3::ZERO,
-            }),
-        ));
+        sheet
+            .sim
+            .resource_mut::<ClothExternalColliders>()
+            .push(external(
+                entity,
+                ClothColliderShape::Capsule {
+                    radius: 0.1,
+                    half_length: 0.2,
+                },
+                [at, at],
+                Some(ClothColliderBody {
+                    body: entity,
+                    inv_mass: Vec3::splat(10.0),
+                    inv_inertia: Mat3::IDENTITY * 1000.0,
+                    center_of_mass: at.translation.into(),
+                    linear_velocity: Vec3::ZERO,
+                    angular_velocity: Vec3::ZERO,
+                }),
+            ));
         sheet.steps(1);
         let of = sheet.sim.resource::<ClothReactions>();
         reactions.extend(
@@ -64,10 +67,13 @@ fn bits(own_stages: bool, instruction_set: InstructionSet) -> Vec<[u32; 3]> {
 
 #[test]
 fn both_runners_and_all_instruction_sets_give_the_same_bits() {
-    let whole = bits(false, InstructionSet::Auto);
-    assert!(whole == bits(true, InstructionSet::Auto), "stage by stage");
+    let whole = bits(false, ClothInstructionSet::Auto);
     assert!(
-        whole == bits(false, InstructionSet::Scalar),
+        whole == bits(true, ClothInstructionSet::Auto),
+        "stage by stage"
+    );
+    assert!(
+        whole == bits(false, ClothInstructionSet::Scalar),
         "without vectors"
     );
 }
@@ -79,7 +85,7 @@ fn what_carries_a_body_stays_awake_either_way() {
         let mut sheet = Sheet::new(&Scene {
             resolution: UVec2::splat(17),
             substeps: Some(12),
-            pins: ClothPins::edges([GridEdge::Left, GridEdge::Right]),
+            pins: ClothPins::edges([ClothEdge::Left, ClothEdge::Right]),
             sleep: ClothSleep::default(),
             ..Scene::default()
         });
@@ -90,7 +96,7 @@ fn what_carries_a_body_stays_awake_either_way() {
         let mut pushes = Vec::new();
         for _ in 0..300 {
             let at = Isometry3d::from_translation(Vec3::new(0.0, 0.0, 0.05));
-            let body = ColliderBody {
+            let body = ClothColliderBody {
                 body: entity,
                 inv_mass: Vec3::splat(2.0),
                 inv_inertia: Mat3::IDENTITY * 20.0,
@@ -98,10 +104,10 @@ fn what_carries_a_body_stays_awake_either_way() {
                 linear_velocity: Vec3::ZERO,
                 angular_velocity: Vec3::ZERO,
             };
-            let mut colliders = sheet.sim.resource_mut::<ExternalColliders>();
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
             colliders.push(external(
                 entity,
-                ColliderShape::Sphere { radius: 0.2 },
+                ClothColliderShape::Sphere { radius: 0.2 },
                 [at, at],
                 Some(body),
             ));
@@ -110,8 +116,8 @@ fn what_carries_a_body_stays_awake_either_way() {
             let impulse = reactions.get(entity).map(|reaction| reaction.impulse);
             pushes.push(impulse.map(|impulse| impulse.to_array().map(f32::to_bits)));
         }
-        let rest = sheet.sim.app.world().get::<ClothRest>(sheet.entity);
-        (pushes, rest.is_some_and(ClothRest::is_asleep))
+        let rest = sheet.sim.app.world().get::<ClothSleepState>(sheet.entity);
+        (pushes, rest.is_some_and(ClothSleepState::is_asleep))
     };
     let (whole, asleep) = run(false);
     assert!(!asleep && whole.last().is_some_and(Option::is_some));
@@ -121,7 +127,7 @@ fn what_carries_a_body_stays_awake_either_way() {
     assert_eq!(differs, None, "first step that differs");
 }
 
-/// What wakes a cloth is met in the same step, with systems of a game as without.
+/// A collider that wakes a cloth is met in the same step, with systems of a game as without.
 #[test]
 fn what_wakes_a_cloth_is_met_at_once_either_way() {
     let run = |own_stages: bool| {
@@ -129,10 +135,10 @@ fn what_wakes_a_cloth_is_met_at_once_either_way() {
             resolution: UVec2::splat(17),
             substeps: Some(8),
             pins: ClothPins::edges([
-                GridEdge::Left,
-                GridEdge::Right,
-                GridEdge::Top,
-                GridEdge::Bottom,
+                ClothEdge::Left,
+                ClothEdge::Right,
+                ClothEdge::Top,
+                ClothEdge::Bottom,
             ]),
             sleep: ClothSleep::default(),
             gravity: Vec3::ZERO,
@@ -152,8 +158,8 @@ fn what_wakes_a_cloth_is_met_at_once_either_way() {
         }
         sheet.steps(240);
         let asleep = |sheet: &Sheet| {
-            let rest = sheet.sim.app.world().get::<ClothRest>(sheet.entity);
-            rest.is_some_and(ClothRest::is_asleep)
+            let rest = sheet.sim.app.world().get::<ClothSleepState>(sheet.entity);
+            rest.is_some_and(ClothSleepState::is_asleep)
         };
         assert!(asleep(&sheet));
         let at = Transform::from_xyz(0.1, 0.05, -0.15);

@@ -95,7 +95,7 @@ pub fn all() -> Vec<Case> {
         .into_iter()
         .flat_map(|v| [0.5 * v, -0.5 * v])
         .collect();
-    let ball = ColliderShape::Sphere { radius: 0.25 };
+    let ball = ClothColliderShape::Sphere { radius: 0.25 };
     let at = |x: f32| Isometry3d::new(Vec3::X * x, Quat::IDENTITY);
     vec![
         Case {

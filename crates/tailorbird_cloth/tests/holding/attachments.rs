@@ -1,4 +1,4 @@
-//! What rigid attachments do.
+//! Rigid attachments.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
@@ -21,7 +21,7 @@ fn the_one_line_of_the_guide_works() {
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
     let cloth = world.spawn((
         square(9),
-        related!(ClothAttachments[ClothAttachment::edge(GridEdge::Top).to(hand)]),
+        related!(ClothAttachments[ClothAttachment::edge(ClothEdge::Top).to(hand)]),
     ));
     world.steps(60);
     for i in 0..9 {
@@ -29,7 +29,7 @@ fn the_one_line_of_the_guide_works() {
         assert!(world.at(cloth, i).distance(rest) < 1e-6);
     }
     assert!(world.at(cloth, 80).y < -0.4);
-    let held: &Attachments = world.get(hand);
+    let held: &ClothAttachmentsHeld = world.get(hand);
     let listed: &ClothAttachments = world.get(cloth);
     assert!(held.iter().eq(listed.iter()) && held.len() == 1);
 }
@@ -40,9 +40,9 @@ fn an_edge_follows_a_fast_spinning_target_without_lag() {
         let mut world = vacuum();
         let hand = world.spawn((wild(0.0), Path::new(wild)));
         let cloth = world.spawn((square(17), solver));
-        world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+        world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
         // The same, pinned to a frame that moves so.
-        let pins = ClothPins::edges([GridEdge::Top]);
+        let pins = ClothPins::edges([ClothEdge::Top]);
         let pinned = world.spawn((square(17), solver, pins, wild(0.0), Path::new(wild)));
         let local = |i: usize| Vec3::new(i as f32 / 16.0 - 0.5, 0.5, 0.0);
         let mut stretch = [0.0f32; 2];
@@ -113,7 +113,7 @@ fn a_cloth_whose_entity_moves_is_held_in_the_world() {
     let mut world = vacuum();
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
     let cloth = world.spawn((square(9), Transform::default(), Path::new(wild)));
-    world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
+    world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(1);
     let start = world.at(cloth, 0);
     for _ in 0..60 {
@@ -133,7 +133,7 @@ fn a_rope_between_two_bones_hangs_as_a_catenary() {
     let mut world = vacuum();
     let bones = [0.0, 0.6].map(|x| world.spawn(Transform::from_xyz(x, 2.0, 0.0)));
     let cloth = world.spawn((rope(), Transform::from_xyz(0.0, 2.0, 0.0)));
-    for (bone, edge) in bones.into_iter().zip([GridEdge::Top, GridEdge::Bottom]) {
+    for (bone, edge) in bones.into_iter().zip([ClothEdge::Top, ClothEdge::Bottom]) {
         let held = ClothAttachment::edge(edge)
             .with_points([Vec3::new(0.0, 0.0, 0.01), Vec3::new(0.0, 0.0, -0.01)]);
         world.attach(cloth, bone, held);
@@ -172,7 +172,7 @@ fn a_released_particle_keeps_its_velocity() {
     let throw = |t: f32| Transform::from_xyz(2.0 * t, 3.0 * t, 0.0);
     for despawn_target in [false, true] {
         let mut world = vacuum();
-        world.record::<AttachmentBroken>();
+        world.record::<ClothAttachmentBroken>();
         let hand = world.spawn((throw(0.0), Path::new(throw)));
         let cloth = world.spawn(square(5));
         let all = ClothAttachment::within(Vec3::ZERO, 2.0);
@@ -187,13 +187,13 @@ fn a_released_particle_keeps_its_velocity() {
         // Semi-implicit: g h t/2 more, h a substep.
         assert!(flown.distance(expected) < 0.02, "{flown} {expected}");
         assert!(!world.exists(attachment));
-        let told: Vec<BreakReason> = world
-            .recorded::<AttachmentBroken>()
+        let told: Vec<ClothBreakReason> = world
+            .recorded::<ClothAttachmentBroken>()
             .iter()
             .map(|broken| broken.reason)
             .collect();
-        let expected: &[BreakReason] = if despawn_target {
-            &[BreakReason::TargetGone]
+        let expected: &[ClothBreakReason] = if despawn_target {
+            &[ClothBreakReason::TargetGone]
         } else {
             &[]
         };
@@ -207,7 +207,7 @@ fn attachments_go_with_their_cloth_and_not_with_their_target() {
     let hands = [0.0, 1.0].map(|x| world.spawn(Transform::from_xyz(x, 0.0, 0.0)));
     let cloth = world.spawn(square(5));
     let attachments =
-        hands.map(|hand| world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft)));
+        hands.map(|hand| world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft)));
     world.steps(2);
     world.despawn(cloth);
     world.steps(2);
@@ -261,8 +261,8 @@ fn a_cloth_jumps_with_all_that_holds_it() {
             let mut world = vacuum();
             let hand = world.spawn(Transform::default());
             let cloth = world.spawn(square(9));
-            world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
-            let soft = ClothAttachment::corner(GridCorner::TopRight).with_compliance(1e-3);
+            world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
+            let soft = ClothAttachment::corner(ClothCorner::TopRight).with_compliance(1e-3);
             world.attach(cloth, hand, soft);
             world.steps(40);
             if jumps {
@@ -295,7 +295,7 @@ fn another_offset_target_or_selection_is_reached_at_thirty_metres_a_second() {
     let attachment = world.attach(cloth, hands[0], ClothAttachment::particles([0]));
     world.steps(3);
     let start = world.at(cloth, 0);
-    world.insert(attachment, AttachedTo(hands[1]));
+    world.insert(attachment, ClothAttachedTo(hands[1]));
     world.steps(1);
     // It keeps its place at the new one.
     assert!(world.at(cloth, 0).distance(start) < 1e-6);
@@ -322,7 +322,7 @@ fn a_rebuilt_grid_stays_attached() {
     let mut world = vacuum();
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
     let cloth = world.spawn(square(9));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     world.steps(30);
     world.edit::<Cloth>(cloth, |cloth| {
         *cloth = Cloth::grid(Vec2::ONE, UVec2::splat(13)).centered();

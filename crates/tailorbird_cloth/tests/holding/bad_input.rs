@@ -1,4 +1,4 @@
-//! What is wrong is told, and what was right stays in force.
+//! Errors are told, and the last valid state stays in force.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
@@ -14,7 +14,7 @@ fn hung() -> (Sim, Entity, Entity, Entity) {
     let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
-    let attachment = world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
+    let attachment = world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(3);
     assert!(world.complaints(attachment).is_empty());
     (world, cloth, hand, attachment)
@@ -30,10 +30,10 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         ("break_force", |held| held.break_force = Some(0.0)),
         ("break_force", |held| held.break_force = Some(f32::INFINITY)),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::NAN]);
+            held.offset = ClothAttachmentOffset::Points(vec![Vec3::NAN]);
         }),
         ("offset", |held| {
-            held.offset = AttachmentOffset::Points(vec![Vec3::ZERO; 3]);
+            held.offset = ClothAttachmentOffset::Points(vec![Vec3::ZERO; 3]);
         }),
     ];
     for (name, change) in wrong {
@@ -47,7 +47,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         );
         assert!(world.at(cloth, 0).distance(CORNER) < 1e-6, "{name}");
         world.edit::<ClothAttachment>(attachment, |held| {
-            *held = ClothAttachment::corner(GridCorner::TopLeft);
+            *held = ClothAttachment::corner(ClothCorner::TopLeft);
         });
         world.steps(1);
         assert!(world.complaints(attachment).is_empty(), "{name}");
@@ -58,7 +58,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
 fn a_selection_that_is_wrong_is_left_out() {
     let (mut world, cloth, _, attachment) = hung();
     world.edit::<ClothAttachment>(attachment, |held| {
-        held.selections.push(PinSelection::Particle(25));
+        held.selections.push(ClothSelection::Particle(25));
     });
     world.steps(60);
     let errors = world.complaints(attachment);
@@ -96,7 +96,7 @@ fn a_target_that_is_nowhere_holds_where_it_was() {
 fn another_target_that_is_nowhere_changes_nothing_until_it_is_somewhere() {
     let (mut world, cloth, _, attachment) = hung();
     let nowhere = world.spawn(Transform::from_translation(Vec3::NAN));
-    world.insert(attachment, AttachedTo(nowhere));
+    world.insert(attachment, ClothAttachedTo(nowhere));
     world.steps(3);
     assert!(world.complaints(attachment)[0].contains("GlobalTransform"));
     assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
@@ -118,15 +118,15 @@ fn an_attachment_without_its_relationships_says_so() {
     let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
-    let held = || ClothAttachment::corner(GridCorner::TopLeft);
+    let held = || ClothAttachment::corner(ClothCorner::TopLeft);
     let loose = world.spawn(held().to(hand));
-    let aimless = world.spawn((held(), AttachmentOf(cloth)));
+    let aimless = world.spawn((held(), ClothAttachmentOf(cloth)));
     world.steps(2);
-    assert!(world.complaints(loose)[0].contains("AttachmentOf"));
-    assert!(world.complaints(aimless)[0].contains("AttachedTo"));
+    assert!(world.complaints(loose)[0].contains("ClothAttachmentOf"));
+    assert!(world.complaints(aimless)[0].contains("ClothAttachedTo"));
     assert!(world.exists(aimless));
     // It is never too late.
-    world.insert(loose, AttachmentOf(cloth));
+    world.insert(loose, ClothAttachmentOf(cloth));
     world.steps(1);
     assert!(world.complaints(loose).is_empty());
     let at = world.at(cloth, 0);
@@ -137,7 +137,9 @@ fn an_attachment_without_its_relationships_says_so() {
 #[test]
 fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
     let wrong: [(&str, fn(&mut ClothMotionConstraints)); 5] = [
-        ("max_distance", |c| c.max_distance = PerParticle::All(-1.0)),
+        ("max_distance", |c| {
+            c.max_distance = ClothPerParticle::All(-1.0)
+        }),
         ("max_distance[3]", |c| {
             let mut values = vec![0.1; 25];
             values[3] = f32::NAN;
@@ -153,7 +155,7 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
     ];
     for (name, change) in wrong {
         let mut world = vacuum();
-        let cloth = world.spawn((square(5), ClothMotionConstraints::within(0.2)));
+        let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.2)));
         world.steps(2);
         world.edit(cloth, change);
         world.steps(60);
@@ -164,7 +166,7 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
         );
         assert!(world.at(cloth, 12).length() < 0.2 + 1e-5);
         world.edit(cloth, |c: &mut ClothMotionConstraints| {
-            *c = ClothMotionConstraints::within(0.3);
+            *c = ClothMotionConstraints::at_most(0.3);
         });
         world.steps(60);
         assert!(world.complaints(cloth).is_empty());
@@ -178,7 +180,7 @@ fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
     for (name, broken) in [("positions[7]", Vec3::NAN), ("normals[7]", Vec3::INFINITY)] {
         let mut world = vacuum();
         let targets = ClothMotionTargets::default();
-        let cloth = world.spawn((square(5), ClothMotionConstraints::within(0.0), targets));
+        let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.0), targets));
         let mut positions = rest(&world, cloth);
         let mut normals = vec![Vec3::Z; 25];
         world.steps(2);
@@ -241,7 +243,7 @@ proptest! {
             held = held.with_points(vec![Vec3::new(x, y, z); points]);
         }
         world.attach(cloth, hand, held);
-        let limits = ClothMotionConstraints::within(most).with_backstop(distance, radius);
+        let limits = ClothMotionConstraints::at_most(most).with_backstop(distance, radius);
         world.insert(cloth, limits);
         for at in [Vec3::ZERO, Vec3::from(place), Vec3::ONE] {
             world.move_to(hand, Transform::from_translation(at));

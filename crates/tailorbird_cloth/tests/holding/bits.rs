@@ -22,13 +22,13 @@ fn everything(world: &mut Sim, size: UVec2) -> Entity {
         rigid(),
         dance(0.0),
         Path::new(|t| dance(0.5 * t)),
-        ClothMotionConstraints::within(limits.collect::<Vec<_>>()).with_backstop(0.05, 0.7),
+        ClothMotionConstraints::at_most(limits.collect::<Vec<_>>()).with_backstop(0.05, 0.7),
         ClothPinForces::default(),
     ));
-    world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
-    let soft = ClothAttachment::edge(GridEdge::Right).with_compliance(1e-3);
+    world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
+    let soft = ClothAttachment::edge(ClothEdge::Right).with_compliance(1e-3);
     world.attach(cloth, hand, soft);
-    let breaks = ClothAttachment::corner(GridCorner::BottomLeft).with_break_force(3.0);
+    let breaks = ClothAttachment::corner(ClothCorner::BottomLeft).with_break_force(3.0);
     world.attach(cloth, hand, breaks);
     cloth
 }
@@ -86,12 +86,12 @@ fn every_instruction_set_gives_the_same_bits() {
         world.settings().instruction_set = instruction_set;
         hash(&mut world, UVec2::new(19, 13), 60)
     };
-    let scalar = bits(InstructionSet::Scalar);
+    let scalar = bits(ClothInstructionSet::Scalar);
     for set in [
-        InstructionSet::Sse2,
-        InstructionSet::Avx2,
-        InstructionSet::Avx512,
-        InstructionSet::Auto,
+        ClothInstructionSet::Sse2,
+        ClothInstructionSet::Avx2,
+        ClothInstructionSet::Avx512,
+        ClothInstructionSet::Auto,
     ] {
         assert_eq!(bits(set), scalar, "{set:?}");
     }
@@ -104,7 +104,7 @@ fn as_a_child() {
         return;
     };
     let mut world = Sim::with_threads(Some(threads)).started();
-    world.app.insert_resource(Wind::vacuum());
+    world.app.insert_resource(ClothWind::vacuum());
     // Large enough for several threads at one.
     let large = hash(&mut world, UVec2::new(131, 150), 30);
     child::tell(large);

@@ -10,15 +10,15 @@ use crate::world::{square, vacuum};
 /// Hangs a sheet by its upper edge, slowly gets heavier, and tells at which weight it fell.
 fn weight_at_break(side: u32, substeps: u32, break_force: f32, edge: bool) -> f32 {
     let mut world = vacuum();
-    world.record::<AttachmentBroken>();
+    world.record::<ClothAttachmentBroken>();
     world.settings().substeps = Some(substeps);
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(side));
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 5.0);
     let held = if edge {
-        ClothAttachment::edge(GridEdge::Top)
+        ClothAttachment::edge(ClothEdge::Top)
     } else {
-        ClothAttachment::corner(GridCorner::TopLeft)
+        ClothAttachment::corner(ClothCorner::TopLeft)
     };
     world.settings().gravity = Vec3::NEG_Y;
     let attachment = world.attach(cloth, hand, held.with_break_force(break_force));
@@ -28,10 +28,10 @@ fn weight_at_break(side: u32, substeps: u32, break_force: f32, edge: bool) -> f3
         let gravity = 1.0 + 0.01 * k as f32;
         world.settings().gravity = Vec3::NEG_Y * gravity;
         world.steps(1);
-        if let Some(broken) = world.recorded::<AttachmentBroken>().first() {
+        if let Some(broken) = world.recorded::<ClothAttachmentBroken>().first() {
             assert_eq!(broken.entity, cloth);
             assert_eq!((broken.attachment, broken.target), (attachment, hand));
-            assert_eq!(broken.reason, BreakReason::Force);
+            assert_eq!(broken.reason, ClothBreakReason::Force);
             assert!(broken.force.length() > break_force);
             assert!(!world.exists(attachment));
             return mass * gravity;
@@ -59,7 +59,7 @@ fn below_its_break_force_it_is_as_good_as_rigid() {
     let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(17));
-    let held = ClothAttachment::edge(GridEdge::Top).with_break_force(20.0);
+    let held = ClothAttachment::edge(ClothEdge::Top).with_break_force(20.0);
     world.attach(cloth, hand, held);
     for _ in 0..300 {
         world.steps(1);
@@ -99,9 +99,9 @@ fn what_is_left_hangs_on() {
     let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(12));
-    let weak = ClothAttachment::corner(GridCorner::TopRight).with_break_force(0.05);
+    let weak = ClothAttachment::corner(ClothCorner::TopRight).with_break_force(0.05);
     let weak = world.attach(cloth, hand, weak);
-    world.attach(cloth, hand, ClothAttachment::corner(GridCorner::TopLeft));
+    world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(200);
     assert!(!world.exists(weak));
     assert!(world.at(cloth, 0).distance(Vec3::new(-0.5, 0.5, 0.0)) < 1e-6);

@@ -12,10 +12,10 @@ fn a_hand_lifts_a_sheet_of_any_resolution() {
         let mut world = vacuum();
         world
             .app
-            .insert_resource(Wind::steady(Vec3::new(0.0, 0.05, 0.8)));
+            .insert_resource(ClothWind::steady(Vec3::new(0.0, 0.05, 0.8)));
         let cloth = world.spawn((
             Cloth::grid(Vec2::splat(2.0), UVec2::splat(n)).centered(),
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
             ClothSleep::never(),
         ));
         world.steps(120);

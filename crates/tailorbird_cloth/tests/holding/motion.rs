@@ -16,8 +16,8 @@ fn rest(cloth: Entity, world: &Sim) -> Vec<Vec3> {
 fn no_particle_gets_further_than_it_may() {
     let mut world = vacuum();
     let weights = (0..81).map(|i| (i / 9) as f32 / 8.0);
-    let limits = PerParticle::weighted(weights.clone(), 0.3);
-    let cloth = world.spawn((square(9), ClothMotionConstraints::within(limits)));
+    let limits = ClothPerParticle::weighted(weights.clone(), 0.3);
+    let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(limits)));
     let rest = rest(cloth, &world);
     for _ in 0..200 {
         world.steps(1);
@@ -42,10 +42,10 @@ fn held_rows_are_as_good_as_pins() {
             let limits = (0..144)
                 .map(|i| if i < 12 { 0.0 } else { f32::INFINITY })
                 .collect::<Vec<_>>();
-            world.insert(cloth, ClothMotionConstraints::within(limits));
+            world.insert(cloth, ClothMotionConstraints::at_most(limits));
         } else {
             world.edit(cloth, |pins: &mut ClothPins| {
-                *pins = ClothPins::edges([GridEdge::Top]);
+                *pins = ClothPins::edges([ClothEdge::Top]);
             });
         }
         world.steps(60);
@@ -108,7 +108,7 @@ fn animate(mut clock: ResMut<Clock>, mut cloths: Query<(&Cloth, &mut ClothMotion
 
 #[test]
 fn targets_in_either_space_are_followed_without_lag() {
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         let mut world = vacuum();
         world.app.init_resource::<Clock>();
         world.app.add_systems(bevy_app::FixedUpdate, animate);
@@ -122,7 +122,7 @@ fn targets_in_either_space_are_followed_without_lag() {
             square(9),
             frame(0.0),
             Path::new(frame),
-            ClothMotionConstraints::within(limits).with_backstop(0.02, 1.0),
+            ClothMotionConstraints::at_most(limits).with_backstop(0.02, 1.0),
             ClothMotionTargets::in_space(space),
         ));
         let rest = rest(cloth, &world);
@@ -132,8 +132,8 @@ fn targets_in_either_space_are_followed_without_lag() {
             let at = swing(clock);
             for (i, rest) in rest.iter().enumerate() {
                 let p = match space {
-                    TargetSpace::Frame => world.particles(cloth).position(i),
-                    TargetSpace::World => world.at(cloth, i),
+                    ClothTargetSpace::Frame => world.particles(cloth).position(i),
+                    ClothTargetSpace::World => world.at(cloth, i),
                 };
                 let away = p.distance(at.transform_point(*rest));
                 let most = if i < 9 { 0.0 } else { most };
@@ -152,7 +152,7 @@ fn a_sphere_counts_before_the_maximum_distance() {
         ClothCollider::sphere(0.3),
         Transform::from_xyz(0.0, 0.0, -0.2),
     ));
-    let cloth = world.spawn((square(17), ClothMotionConstraints::within(0.01)));
+    let cloth = world.spawn((square(17), ClothMotionConstraints::at_most(0.01)));
     world.steps(60);
     let center = Vec3::new(0.0, 0.0, -0.2);
     for p in world.positions(cloth) {
@@ -163,7 +163,7 @@ fn a_sphere_counts_before_the_maximum_distance() {
 #[test]
 fn constraints_that_are_removed_let_go() {
     let mut world = vacuum();
-    let cloth = world.spawn((square(9), ClothMotionConstraints::within(0.0)));
+    let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(0.0)));
     world.steps(10);
     assert_eq!(world.at(cloth, 40), Vec3::ZERO);
     world
@@ -202,7 +202,7 @@ fn a_mesh_is_constrained_by_its_own_numbers() {
     let cloth = world.spawn((
         Cloth::mesh(positions, indices),
         rigid(),
-        ClothMotionConstraints::within(limits.clone()),
+        ClothMotionConstraints::at_most(limits.clone()),
     ));
     let rest = rest(cloth, &world);
     for _ in 0..100 {

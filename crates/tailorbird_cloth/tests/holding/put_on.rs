@@ -126,7 +126,7 @@ fn a_demand_is_told_when_it_begins() {
     let mut world = vacuum();
     let sheet = world.spawn((
         square(9),
-        ClothPins::edges([GridEdge::Left, GridEdge::Right]),
+        ClothPins::edges([ClothEdge::Left, ClothEdge::Right]),
     ));
     world.steps(1);
     let held = (0..81).filter(|i| i % 9 == 0 || i % 9 == 8);

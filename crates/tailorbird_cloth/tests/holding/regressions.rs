@@ -41,7 +41,7 @@ fn no_velocity_spike_in_the_first_substep_of_an_attachment() {
     let mut world = noting(vacuum().without_gravity());
     let hand = world.spawn((steady(0.0), Path::new(steady)));
     let cloth = world.spawn(square(9));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     // The rest is taken along; undamped it swings on for a while.
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 4.0);
     world.steps(200);
@@ -64,9 +64,9 @@ fn no_velocity_spike_in_the_first_substep_of_an_attachment() {
 fn no_velocity_spike_in_the_first_substep_of_a_backstop_or_a_target() {
     // A backstop pushes the whole sheet along its normal, at 10 m/s.
     let push = |t: f32| Transform::from_xyz(0.0, 0.0, SPEED * t);
-    let held: ClothMotionConstraints = ClothMotionConstraints::within(0.0);
+    let held: ClothMotionConstraints = ClothMotionConstraints::at_most(0.0);
     let pushed = ClothMotionConstraints::default().with_backstop(0.01, 100.0);
-    for constraints in [pushed, held, ClothMotionConstraints::within(0.02)] {
+    for constraints in [pushed, held, ClothMotionConstraints::at_most(0.02)] {
         let mut world = noting(vacuum().without_gravity());
         let cloth = world.spawn((square(9), constraints, ClothMotionTargets::default()));
         let rest = world.get::<Cloth>(cloth).rest_positions();
@@ -103,15 +103,15 @@ fn no_velocity_grows_on_a_resting_contact() {
     let lying = Transform::from_rotation(Quat::from_rotation_x(-1.2));
     for constraints in [
         ClothMotionConstraints::default().with_backstop(0.05, 5.0),
-        ClothMotionConstraints::within(0.05),
-        ClothMotionConstraints::within(0.05).with_backstop(0.02, 0.5),
+        ClothMotionConstraints::at_most(0.05),
+        ClothMotionConstraints::at_most(0.05).with_backstop(0.02, 0.5),
     ] {
         let mut world = vacuum();
         let cloth = world.spawn((
             square(12),
             lying,
             constraints,
-            ClothPins::corners(GridCorner::TOP),
+            ClothPins::corners(ClothCorner::TOP),
         ));
         let mut fastest = Vec::new();
         for _ in 0..6 {
@@ -131,7 +131,7 @@ fn the_last_motion_is_not_replayed_when_no_new_input_comes() {
     world.attach(attached, hand, ClothAttachment::within(Vec3::ZERO, 2.0));
     let aimed = world.spawn((
         square(5),
-        ClothMotionConstraints::within(0.0),
+        ClothMotionConstraints::at_most(0.0),
         ClothMotionTargets::default(),
     ));
     world.steps(2);

@@ -14,7 +14,7 @@ fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (Sim, Enti
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(8), ClothMotionTargets::default()));
     if let Some(most) = constraints {
-        let constraints = ClothMotionConstraints::within(most);
+        let constraints = ClothMotionConstraints::at_most(most);
         world.insert(cloth, constraints);
     }
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
@@ -30,11 +30,11 @@ fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (Sim, Enti
 }
 
 fn is_asleep(world: &Sim, cloth: Entity) -> bool {
-    world.get::<ClothRest>(cloth).is_asleep()
+    world.get::<ClothSleepState>(cloth).is_asleep()
 }
 
 fn holds() -> [ClothAttachment; 3] {
-    let edge = ClothAttachment::edge(GridEdge::Top);
+    let edge = ClothAttachment::edge(ClothEdge::Top);
     [
         edge.clone(),
         edge.clone().with_compliance(0.01),
@@ -102,7 +102,7 @@ fn it_wakes_when_the_attachment_goes_or_another_comes() {
 
 #[test]
 fn targets_that_are_set_to_where_they_are_wake_nobody_and_others_do() {
-    let held = ClothAttachment::edge(GridEdge::Top);
+    let held = ClothAttachment::edge(ClothEdge::Top);
     let (mut world, cloth, _) = sleeping(held, Some(0.1));
     let rest = world.get::<Cloth>(cloth).rest_positions();
     let aim = |world: &mut Sim, by: f32| {

@@ -19,7 +19,7 @@ fn hanging(attachment: ClothAttachment, side: u32) -> (Sim, Entity, Entity) {
     (world, cloth, attachment)
 }
 
-/// How far the sheet's upper corner hangs below where it is held, and its weight.
+/// Distance of the sheet's upper corner below the point that holds it, and its weight.
 fn sag(world: &Sim, cloth: Entity) -> (f32, f32) {
     (0.5 - world.at(cloth, 0).y, world.mass(cloth) * G)
 }
@@ -27,7 +27,7 @@ fn sag(world: &Sim, cloth: Entity) -> (f32, f32) {
 #[test]
 fn a_spring_gives_way_by_compliance_times_weight_whatever_the_resolution() {
     for (compliance, side) in [(0.05, 9), (0.05, 24), (0.005, 24)] {
-        let held = ClothAttachment::edge(GridEdge::Top).with_compliance(compliance);
+        let held = ClothAttachment::edge(ClothEdge::Top).with_compliance(compliance);
         let (world, cloth, attachment) = hanging(held, side);
         let (_, weight) = sag(&world, cloth);
         // The middle of the edge: its mean.
@@ -37,7 +37,7 @@ fn a_spring_gives_way_by_compliance_times_weight_whatever_the_resolution() {
             (mean - compliance * weight).abs() < 0.03 * compliance * weight,
             "{side}: {mean}"
         );
-        let carried = world.get::<AttachmentForce>(attachment).force;
+        let carried = world.get::<ClothAttachmentForce>(attachment).force;
         assert!(
             (carried + Vec3::Y * weight).length() < 0.01 * weight,
             "{carried} {weight}"
@@ -48,7 +48,7 @@ fn a_spring_gives_way_by_compliance_times_weight_whatever_the_resolution() {
 #[test]
 fn springs_add_no_stretch() {
     let held = |compliance| {
-        let held = ClothAttachment::edge(GridEdge::Top).with_compliance(compliance);
+        let held = ClothAttachment::edge(ClothEdge::Top).with_compliance(compliance);
         let (world, cloth, _) = hanging(held, 24);
         world.stretch(cloth).max
     };
@@ -111,9 +111,9 @@ fn a_soft_hold_follows_softly() {
 #[test]
 fn pins_carry_the_weight_of_the_sheet() {
     let holds = [
-        ClothPins::edges([GridEdge::Top]),
-        ClothPins::corners(GridCorner::TOP),
-        ClothPins::corners([GridCorner::TopLeft]),
+        ClothPins::edges([ClothEdge::Top]),
+        ClothPins::corners(ClothCorner::TOP),
+        ClothPins::corners([ClothCorner::TopLeft]),
     ];
     for (pins, solver) in holds.into_iter().flat_map(|pins| {
         [ClothSolver::Chains, ClothSolver::GaussSeidel].map(|solver| (pins.clone(), solver))
@@ -148,15 +148,15 @@ fn springs_and_pins_share_the_weight() {
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((
         square(20),
-        ClothPins::corners([GridCorner::TopLeft]),
+        ClothPins::corners([ClothCorner::TopLeft]),
         ClothPinForces::default(),
     ));
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
-    let held = ClothAttachment::corner(GridCorner::TopRight).with_compliance(1e-3);
+    let held = ClothAttachment::corner(ClothCorner::TopRight).with_compliance(1e-3);
     let attachment = world.attach(cloth, hand, held);
     world.steps(900);
     let pin = world.get::<ClothPinForces>(cloth).force();
-    let spring = world.get::<AttachmentForce>(attachment).force;
+    let spring = world.get::<ClothAttachmentForce>(attachment).force;
     let weight = world.mass(cloth) * G;
     assert!(
         (pin + spring + Vec3::Y * weight).length() < 0.02 * weight,

@@ -35,10 +35,10 @@ fn cape(held: Held, unseen: bool) -> (Sim, Entity) {
     match held {
         Held::Pinned => {
             let mut cloth = world.app.world_mut().entity_mut(cloth);
-            cloth.insert((ClothPins::edges([GridEdge::Top]), ChildOf(body)));
+            cloth.insert((ClothPins::edges([ClothEdge::Top]), ChildOf(body)));
         }
         Held::Attached | Held::AttachedBelow => {
-            world.attach(cloth, body, ClothAttachment::edge(GridEdge::Top));
+            world.attach(cloth, body, ClothAttachment::edge(ClothEdge::Top));
         }
     }
     if matches!(held, Held::AttachedBelow) {
@@ -73,7 +73,7 @@ fn it_keeps_its_shape_and_goes_where_its_holder_goes() {
         let before = shape(&world, cloth);
         see(&mut world, cloth, false);
         world.steps(240);
-        assert!(world.get::<ClothRest>(cloth).is_unseen(), "{held:?}");
+        assert!(world.get::<ClothSleepState>(cloth).is_unseen(), "{held:?}");
         assert!(furthest(&before, &shape(&world, cloth)) < 1e-3, "{held:?}");
         let frame: &ClothFrame = world.get(cloth);
         let bounds: &ClothBounds = world.get(cloth);
@@ -104,7 +104,7 @@ fn it_goes_on_as_one_that_was_seen_all_the_time() {
             let mut stretch = 0.0f32;
             for _ in 0..30 {
                 world.steps(1);
-                assert!(!world.get::<ClothRest>(cloth).is_asleep(), "{held:?}");
+                assert!(!world.get::<ClothSleepState>(cloth).is_asleep(), "{held:?}");
                 stretch = stretch.max(world.stretch(cloth).max);
             }
             let away = furthest(&before, &shape(&world, cloth));
@@ -129,23 +129,23 @@ fn it_stays_awake_without_the_setting_and_with_targets_and_wakes_by_nothing_else
     let (mut world, cloth) = cape(Held::Pinned, false);
     see(&mut world, cloth, false);
     world.steps(10);
-    assert!(!world.get::<ClothRest>(cloth).is_asleep());
+    assert!(!world.get::<ClothSleepState>(cloth).is_asleep());
     world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = true);
     world.steps(1);
-    assert!(world.get::<ClothRest>(cloth).is_asleep());
+    assert!(world.get::<ClothSleepState>(cloth).is_asleep());
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 1.0);
     world.edit::<ClothForces>(cloth, |forces| forces.add_force(100, Vec3::X));
     let shape_before = shape(&world, cloth);
     for paused in [false, true, false] {
         world.settings().paused = paused;
         world.steps(5);
-        assert!(world.get::<ClothRest>(cloth).is_unseen());
+        assert!(world.get::<ClothSleepState>(cloth).is_unseen());
         assert!(furthest(&shape_before, &shape(&world, cloth)) < 1e-3);
     }
     let mut targets = world.app.world_mut().entity_mut(cloth);
     targets.insert(ClothMotionTargets::default());
     world.steps(1);
-    assert!(!world.get::<ClothRest>(cloth).is_asleep());
+    assert!(!world.get::<ClothSleepState>(cloth).is_asleep());
 }
 
 /// While it is paused it may be seen again; it goes on with the simulation.
@@ -176,7 +176,7 @@ fn it_comes_back_during_a_pause() {
             let speed = world.velocity(cloth, i).length();
             assert!((speed - RUN).abs() < 1.5, "{held:?}: {speed}");
         }
-        assert!(!world.get::<ClothRest>(cloth).is_asleep());
+        assert!(!world.get::<ClothSleepState>(cloth).is_asleep());
     }
 }
 
@@ -187,7 +187,7 @@ fn it_stays_with_a_holder_that_stands_while_its_entity_moves() {
     let walker = world.spawn((Transform::default(), runner()));
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(12), ChildOf(walker)));
-    world.attach(cloth, hand, ClothAttachment::edge(GridEdge::Top));
+    world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
     world.edit::<ClothSleep>(cloth, |sleep| sleep.unseen = true);
     world.steps(240);
@@ -212,7 +212,7 @@ fn it_is_whole_when_it_is_rebuilt_and_takes_one_step_when_it_is_woken() {
         });
         world.edit::<Transform>(cloth, |at| at.scale = Vec3::splat(scale));
         world.steps(1);
-        assert!(world.get::<ClothRest>(cloth).is_unseen());
+        assert!(world.get::<ClothSleepState>(cloth).is_unseen());
         let count = (n * n) as usize;
         assert_eq!(world.particles(cloth).len(), count);
         assert_eq!(world.get::<ClothNormals>(cloth).len(), count);
@@ -221,10 +221,10 @@ fn it_is_whole_when_it_is_rebuilt_and_takes_one_step_when_it_is_woken() {
         assert!((0.8 * scale..2.0 * scale).contains(&size), "{size}");
     }
     let hash = world.hash(cloth);
-    world.edit::<ClothRest>(cloth, ClothRest::wake);
+    world.edit::<ClothSleepState>(cloth, ClothSleepState::wake);
     world.steps(1);
     let after = world.hash(cloth);
     assert_ne!(after, hash);
     world.steps(1);
-    assert!(world.get::<ClothRest>(cloth).is_unseen());
+    assert!(world.get::<ClothSleepState>(cloth).is_unseen());
 }

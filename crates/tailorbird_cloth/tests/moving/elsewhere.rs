@@ -1,4 +1,4 @@
-//! What is put elsewhere takes its cloth along.
+//! An entity that is put elsewhere takes its cloth along.
 
 use bevy_app::{PostUpdate, Update};
 use bevy_ecs::prelude::*;
@@ -12,18 +12,18 @@ use crate::game::{HELD, Held, cape, film, game, game_stepping_in, spawn_cape};
 const RATES: [f64; 4] = [30.0, 60.0, 64.0, 144.0];
 
 #[derive(Resource, Default)]
-struct Told(Vec<Teleported>);
+struct Told(Vec<ClothMotionTeleported>);
 
 fn listen(game: &mut Sim) {
     game.app.init_resource::<Told>().add_systems(
         Update,
-        |mut messages: MessageReader<Teleported>, mut told: ResMut<Told>| {
+        |mut messages: MessageReader<ClothMotionTeleported>, mut told: ResMut<Told>| {
             told.0.extend(messages.read().copied());
         },
     );
 }
 
-fn told(game: &Sim) -> &[Teleported] {
+fn told(game: &Sim) -> &[ClothMotionTeleported] {
     &game.resource::<Told>().0
 }
 
@@ -61,7 +61,7 @@ fn a_hop_of_two_metres_stretches_nothing_and_is_told() {
                 let name = format!("{fps} {held:?} {when:?}");
                 let (is, should) = (hops.stretch(), runs.stretch());
                 assert!(is < 0.05, "{name}: {is}, {should} without");
-                let expected = Teleported {
+                let expected = ClothMotionTeleported {
                     entity: body,
                     told: false,
                 };
@@ -107,7 +107,7 @@ fn what_several_hold_goes_along_with_all_of_them() {
             let mut game = game(fps, 60.0);
             let cloth = game.spawn(cape());
             let body = game.spawn(Transform::default());
-            let hands = [GridCorner::TopLeft, GridCorner::TopRight].map(|corner| {
+            let hands = [ClothCorner::TopLeft, ClothCorner::TopRight].map(|corner| {
                 let hand = game.spawn(Transform::default());
                 game.attach(cloth, hand, ClothAttachment::corner(corner));
                 hand
@@ -152,7 +152,7 @@ fn a_short_hop_of_a_holder_is_told() {
             game.seconds(2.0);
             let before = game.at(cloth, 300);
             game.shift(body, Vec3::X * 0.25);
-            game.edit::<SampledMotion>(body, SampledMotion::teleport);
+            game.edit::<ClothSampledMotion>(body, ClothSampledMotion::teleport);
             let mut speed = 0.0f32;
             for _ in 0..20 {
                 game.frames(1);
@@ -161,7 +161,7 @@ fn a_short_hop_of_a_holder_is_told() {
             assert!(speed < 0.5, "{fps} {held:?}: {speed}");
             let moved = game.at(cloth, 300) - before;
             assert!(moved.distance(Vec3::X * 0.25) < 0.02, "{moved}");
-            let expected = Teleported {
+            let expected = ClothMotionTeleported {
                 entity: body,
                 told: true,
             };
@@ -224,7 +224,7 @@ fn nobody_feels_that_the_origin_is_shifted() {
 fn a_collider_that_hops_sweeps_nothing_along() {
     for fps in RATES {
         let mut game = game(fps, 60.0);
-        let cloth = game.spawn((cape(), ClothPins::edges([GridEdge::Top])));
+        let cloth = game.spawn((cape(), ClothPins::edges([ClothEdge::Top])));
         let ball = Transform::from_xyz(0.0, -0.6, -1.0);
         let ball = game.spawn((ClothCollider::sphere(0.2), ball));
         game.seconds(2.0);
@@ -237,7 +237,7 @@ fn a_collider_that_hops_sweeps_nothing_along() {
     }
 }
 
-/// What holds the cape is hung on somebody else.
+/// The cape's holder gets another parent.
 #[test]
 fn a_holder_that_gets_another_parent_takes_the_cloth_along() {
     for fps in RATES {
@@ -272,7 +272,7 @@ fn a_scaled_parent_does_not_make_hops_of_motion() {
         Path::when(When::PostUpdate, swing),
     ));
     let cloth = game.spawn(cape());
-    game.attach(cloth, bone, ClothAttachment::edge(GridEdge::Top));
+    game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
     game.seconds(3.0);
     assert_eq!(told(&game), []);
 }

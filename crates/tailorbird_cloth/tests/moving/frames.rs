@@ -1,4 +1,4 @@
-//! What moves in each frame gives what motion in `FixedUpdate` gives, at all rates.
+//! Motion in each frame gives the same as motion in `FixedUpdate`, at all rates.
 
 use bevy_app::{FixedFirst, FixedLast, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
@@ -25,11 +25,11 @@ fn swing(t: f32) -> Transform {
     .with_rotation(Quat::from_rotation_y(0.4 * ramp * (5.0 * t).sin()))
 }
 
-/// What is seen from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and
+/// Film from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and
 /// twice the same motion, a step later, differs by 10 %.
 fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Sim)) -> Film {
     let mut game = game(fps, hz);
-    game.app.insert_resource(Wind::default());
+    game.app.insert_resource(ClothWind::default());
     prepare(&mut game);
     game.seconds(3.0);
     film(&mut game);
@@ -37,7 +37,7 @@ fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Sim)) -> Film {
     film(&mut game)
 }
 
-/// How much more all rows are jolted than with motion in `FixedUpdate`, at worst.
+/// Ratio of the jolts of all rows to those with motion in `FixedUpdate`, at worst.
 fn worst(film: &Film, fixed: &Film, columns: usize) -> f32 {
     let rows = film.jolts(columns).into_iter().zip(fixed.jolts(columns));
     rows.map(|(is, should)| is / should).fold(0.0, f32::max)
@@ -78,7 +78,7 @@ fn a_bone_that_is_animated_on_what_the_fixed_loop_moves() {
             let cloth = game.spawn(cape());
             let body = game.spawn((Transform::default(), Path::when(When::FixedUpdate, run)));
             let bone = game.spawn((Transform::default(), Path::when(when, swing), ChildOf(body)));
-            game.attach(cloth, bone, ClothAttachment::edge(GridEdge::Top));
+            game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
         })
     };
     let fixed = bones(60.0, When::FixedUpdate);
@@ -91,12 +91,12 @@ fn a_bone_that_is_animated_on_what_the_fixed_loop_moves() {
 
 #[test]
 fn targets_that_are_set_once_a_frame() {
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         let aimed = |fps, when| {
             filmed(fps, 60.0, |game| {
                 game.spawn((
                     cape(),
-                    ClothMotionConstraints::within(PerParticle::Each(
+                    ClothMotionConstraints::at_most(ClothPerParticle::Each(
                         (0..SIZE.element_product())
                             .map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY })
                             .collect(),
@@ -125,7 +125,7 @@ fn a_collider_that_is_moved_once_a_frame() {
         filmed(fps, 60.0, |game| {
             game.spawn((
                 Cloth::grid(Vec2::new(0.8, 1.2), SIZE).with_origin(Vec2::new(0.5, 0.0)),
-                ClothPins::edges([GridEdge::Top]),
+                ClothPins::edges([ClothEdge::Top]),
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
@@ -165,7 +165,7 @@ fn what_the_fixed_loop_moves_is_not_delayed() {
     }
 }
 
-/// What is between the poses of a physics engine, which it puts back before its steps.
+/// State between the poses of a physics engine, which it puts back before its steps.
 #[derive(Component, Default)]
 struct Eased {
     poses: [Transform; 2],
@@ -228,14 +228,14 @@ proptest! {
         let size = UVec2::new(4, 8);
         let run = |when: When, lengths: &[f64]| {
             let mut game = game(60.0, hz);
-            game.app.insert_resource(Wind::default());
+            game.app.insert_resource(ClothWind::default());
             let cloth = game.spawn((
                 Cloth::grid(Vec2::new(0.3, 0.8), size),
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
             let body = game.spawn((Transform::default(), Path::when(when, swing)));
-            game.attach(cloth, body, ClothAttachment::edge(GridEdge::Top));
+            game.attach(cloth, body, ClothAttachment::edge(ClothEdge::Top));
             for (k, length) in lengths.iter().cycle().take(400).enumerate() {
                 if k == 200 {
                     film(&mut game);

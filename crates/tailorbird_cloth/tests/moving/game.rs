@@ -26,11 +26,11 @@ fn aim(when: When) -> impl Fn(Res<Time>, Query<(&TargetMover, &Cloth, &mut Cloth
     }
 }
 
-/// Where all particles of the first cloth were after each step, in the world.
+/// Positions of all particles of the first cloth after each step, in the world.
 #[derive(Resource, Default)]
 pub struct Film {
     pub steps: Vec<Vec<Vec3>>,
-    pub stretch: Vec<Stretch>,
+    pub stretch: Vec<ClothStretch>,
 }
 
 fn look(
@@ -53,7 +53,7 @@ pub fn game(fps: f64, hz: f64) -> Sim {
 /// Cloths step once a frame.
 pub fn game_stepping_in(schedule: impl ScheduleLabel + Clone, fps: f64) -> Sim {
     let mut game = Sim::stepping_in(schedule.clone());
-    game.app.insert_resource(Wind::vacuum());
+    game.app.insert_resource(ClothWind::vacuum());
     filmed(game, schedule, fps, fps)
 }
 
@@ -121,7 +121,7 @@ pub fn cape() -> impl Bundle {
     )
 }
 
-/// How the cape is held.
+/// Holder of the cape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
     /// Pinned to its entity, which moves.
@@ -139,8 +139,8 @@ pub const HELD: [Held; 4] = [Held::Pinned, Held::Child, Held::Attached, Held::Sp
 /// A cape, and the entity that moves.
 pub fn spawn_cape(game: &mut Sim, held: Held) -> (Entity, Entity) {
     let cloth = game.spawn(cape());
-    let top = || ClothAttachment::edge(GridEdge::Top);
-    let pins = ClothPins::edges([GridEdge::Top]);
+    let top = || ClothAttachment::edge(ClothEdge::Top);
+    let pins = ClothPins::edges([ClothEdge::Top]);
     match held {
         Held::Pinned => {
             game.insert(cloth, pins);

@@ -1,4 +1,4 @@
-//! What moves between frames, while cloth stands still, and at once.
+//! Motion between frames, while cloth stands still, and at once.
 
 #![cfg(test)]
 

@@ -1,4 +1,4 @@
-//! What moved while a cloth did not simulate carries it along.
+//! Motion while a cloth did not simulate carries it along.
 
 use bevy_ecs::{entity_disabling::Disabled, prelude::*};
 use bevy_math::Vec3;
@@ -59,7 +59,7 @@ fn stop(game: &mut Sim, cloth: Entity, why: Why, stops: bool) {
     }
 }
 
-/// What was taken off.
+/// Cloth that was taken off.
 #[derive(Component)]
 struct Shape(Option<Cloth>);
 
@@ -104,14 +104,14 @@ fn what_moved_meanwhile_is_not_felt() {
 /// A cloth whose targets were set elsewhere in a pause.
 #[test]
 fn targets_that_moved_meanwhile_are_not_felt() {
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         for why in ALL {
             let mut game = game(60.0, 60.0);
             let held =
                 (0..SIZE.element_product()).map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY });
             let cloth = game.spawn((
                 cape(),
-                ClothMotionConstraints::within(PerParticle::Each(held.collect())),
+                ClothMotionConstraints::at_most(ClothPerParticle::Each(held.collect())),
                 ClothMotionTargets::in_space(space),
             ));
             let rest = game.get::<Cloth>(cloth).rest_positions();
@@ -166,7 +166,7 @@ fn what_moved_in_a_frame_that_took_very_long_is_not_felt() {
 #[test]
 fn a_collider_that_moved_meanwhile_sweeps_nothing_along() {
     let mut game = game(60.0, 60.0);
-    let cloth = game.spawn((cape(), ClothPins::edges([GridEdge::Top])));
+    let cloth = game.spawn((cape(), ClothPins::edges([ClothEdge::Top])));
     let ball = game.spawn((
         ClothCollider::sphere(0.2),
         Transform::from_xyz(0.0, -0.6, -1.0),

@@ -1,10 +1,10 @@
-//! What is asked of a cloth, as far as physics tells.
+//! Demands on a cloth, as far as physics tells.
 
 use std::{fmt, ops::Range};
 
 use crate::{CALM, SETTLED, WATCHED, film::Film, motion::Motion};
 
-/// What a world violated.
+/// Kind of a violation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// A particle is at no place, or the cloth reports an error.
@@ -33,14 +33,14 @@ impl fmt::Display for Violation {
     }
 }
 
-/// What was measured, in the time that is watched where nothing else is said.
+/// Figures of the time that is watched, unless another one is named.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     /// The fastest particle [m/s].
     pub speed: f64,
-    /// What trembles most [m/s].
+    /// Strongest tremble [m/s].
     pub tremble: f64,
-    /// How fast the particles are, in a vacuum as seen from their mean velocity: root of the mean square [m/s].
+    /// Speed of the particles, in a vacuum as seen from their mean velocity: root of the mean square [m/s].
     pub whole: f64,
     /// The largest rise of energy from [`SETTLED`] on, as a part of the scale [-].
     pub gain: f64,
@@ -74,15 +74,15 @@ impl fmt::Display for Figures {
     }
 }
 
-/// How many times as far apart as in the flat sheet particles may be, besides what holds them apart: while the world is wild, and at the
-/// end [-].
+/// Largest distance of particles as a multiple of that in the flat sheet, besides the distances of holds: while the world is wild, and at
+/// the end [-].
 const APART: [f32; 2] = [10.0, 3.0];
 
-/// How far each collider may push particles apart besides \[m\].
+/// Additional distance by which each collider may push particles apart \[m\].
 const ROOM: f32 = 3.0;
 
-/// Where holds are more than this many times as far apart as in the flat sheet, nothing is asked but that it stays where it is: it is still on
-/// its way to rest.
+/// Ratio of the distances of holds to those in the flat sheet above which the only demand is that the cloth stays where it is: it is still
+/// on its way to rest.
 const TORN: f32 = 10.0;
 
 /// Cloth that is stretched by more than this in the mean has work to give back [-].
@@ -98,19 +98,19 @@ const G: f64 = 9.81;
 /// Part of energy that may come from nowhere [-].
 const GAIN: f64 = 0.01;
 
-/// What is slower rests [m/s].
+/// Speed below which a cloth is at rest [m/s].
 const REST: f64 = 0.1;
 
-/// What comes out of colliders, or back to its length, is as fast as this at most [m/s].
+/// Largest speed of a cloth that comes out of colliders, or back to its length [m/s].
 const RECOVERY: f64 = 2.0;
 
-/// What trembles by less than this part of the motion of the whole is a ripple of it [-].
+/// Part of the motion of the whole below which a tremble is a ripple of it [-].
 const RIPPLE: f64 = 0.5;
 
 /// Motion within this time is trembling \[s\].
 const MOMENT: f64 = 0.08;
 
-/// What was measured, and what is violated.
+/// Figures, and violations.
 pub fn check(film: &Film) -> (Figures, Vec<Violation>) {
     let mut checks = Checks {
         film,

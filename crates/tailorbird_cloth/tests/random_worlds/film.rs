@@ -1,4 +1,4 @@
-//! What is seen of a cloth from step to step.
+//! Film of a cloth from step to step.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -11,12 +11,12 @@ use crate::world::Shape;
 pub struct Body {
     pub at: Transform,
     pub shape: Shape,
-    /// Whether it is on a layer that the cloth meets.
+    /// True if it is on a layer that the cloth meets.
     pub meets: bool,
 }
 
 impl Body {
-    /// How far a point is from the surface, negative inside \[m\].
+    /// Distance of a point from the surface, negative inside \[m\].
     pub fn distance(&self, p: Vec3) -> f32 {
         let p = self.at.rotation.inverse() * (p - self.at.translation);
         match self.shape {
@@ -34,18 +34,18 @@ impl Body {
     }
 }
 
-/// What is seen at the end of a step.
+/// Picture of the cloth at the end of a step.
 pub struct Seen {
-    /// What is wrong with the cloth, or where a particle is not at a finite place.
+    /// Error of the cloth, or a particle without a finite position.
     pub wrong: Option<String>,
     /// The diagonal of the box around all particles \[m\].
     pub spread: f32,
-    /// That of the rest shape \[m\].
+    /// Size of the rest shape \[m\].
     pub size: f32,
     /// Of [`ClothStatus::strained`] [-].
     pub strained: f32,
     /// In the calm alone.
-    pub stretch: Stretch,
+    pub stretch: ClothStretch,
     /// In the world \[m\]; in the calm alone.
     pub places: Vec<Vec3>,
 }
@@ -59,19 +59,19 @@ pub struct Film {
     pub calm: Option<usize>,
     pub bodies: Vec<Body>,
     pub air: bool,
-    /// Whether anything holds the cloth in the calm.
+    /// True if anything holds the cloth in the calm.
     pub held: bool,
     /// The most that all that holds the cloth has gone together \[m\].
     pub reach: f32,
-    /// How many times as far apart as in the flat sheet two held particles are at most in the calm [-].
+    /// Largest distance of two held particles in the calm, as a multiple of that in the flat sheet [-].
     pub asked: f32,
-    /// Those that move freely in the calm, and their masses \[kg\].
+    /// Particles that move freely in the calm, and their masses \[kg\].
     pub free: Vec<(usize, f32)>,
     /// [m/s²].
     pub gravity: Vec3,
     /// Of the material [1/s].
     pub damping: f32,
-    /// How long stretch takes to run along the fabric [s/m].
+    /// Time that stretch takes to run along the fabric [s/m].
     pub slowness: f32,
 }
 
@@ -99,7 +99,7 @@ impl Film {
         self.held = held;
     }
 
-    /// How deep inside a collider any free particle is as the calm begins \[m\].
+    /// Largest depth of a free particle inside a collider as the calm begins \[m\].
     pub fn buried(&self) -> f32 {
         let places = &self.steps[self.calm.unwrap()].places;
         let mut deepest = 0.0f32;
@@ -171,7 +171,7 @@ pub fn film(
         stretch: if calm {
             particles.stretch(topology)
         } else {
-            Stretch::default()
+            ClothStretch::default()
         },
         places: if calm { places } else { Vec::new() },
     });

@@ -89,7 +89,7 @@ fn an_irregular_mesh_hangs_by_a_corner() {
     });
 }
 
-/// What only springs hold is strained as well.
+/// A sheet that only springs hold is strained as well.
 #[test]
 fn two_springs_that_go_too_far_apart_stretch_a_sheet() {
     let spring = |at| Hold {
@@ -138,7 +138,7 @@ fn a_curtain_that_is_held_in_the_ground_comes_out_of_it() {
 #[test]
 #[ignore = "what is crumpled, and metres below, comes out at 3 m/s, where 2 are allowed"]
 fn a_sheet_that_is_buried_comes_out_slowly() {
-    let wind = Event::Wind {
+    let wind = Event::ClothWind {
         velocity: [0.0; 3],
         turbulence: 13.0,
     };

@@ -4,7 +4,7 @@
 //! speed, hop, turn and let go, colliders that appear, fly, jump and vanish, layers, scales and mirrors, teleports, pauses, wind of up to
 //! 100 m/s, other gravity. Then everything stands where it is, and the air is still. `world.rs` has the distributions.
 //!
-//! What is asked (`checks.rs`):
+//! The demands (`checks.rs`):
 //!
 //! 1. **Nothing is wrong**: in all steps each particle is at a finite place, and [`ClothStatus`](tailorbird_cloth::prelude::ClothStatus)
 //!    has no error. No two particles are farther apart than 10 times the sheet's diagonal, in the end 3 times, and the ways of all holds,
@@ -61,7 +61,7 @@ use checks::{Kind, check};
 use scene::happen;
 use world::{World, world};
 
-/// How long anything may happen \[s\].
+/// Longest time for which anything may happen \[s\].
 const WILD: f32 = 2.0;
 
 /// When energy is looked at, after that \[s\].
@@ -73,10 +73,10 @@ const CALM: f32 = 2.0;
 /// For how long \[s\].
 const WATCHED: f32 = 0.5;
 
-/// How many worlds are tried where nobody asks for more.
+/// Number of worlds that are tried unless more are asked for.
 const WORLDS: u64 = 60;
 
-/// What is wrong with a world, if anything.
+/// Verdict on a world, if anything is wrong with it.
 fn verdict(world: &World) -> Option<(Kind, String)> {
     let (figures, violations) = check(&happen(world));
     let kind = violations.first()?.kind;

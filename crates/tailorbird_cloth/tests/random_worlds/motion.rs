@@ -1,4 +1,4 @@
-//! How the free particles move in the calm.
+//! Motion of the free particles in the calm.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub struct Motion {
     pub energy: Vec<f64>,
     /// Kinetic, as seen from the mean velocity.
     pub internal: Vec<f64>,
-    /// Whether any particle is inside a collider.
+    /// True if any particle is inside a collider.
     pub inside: Vec<bool>,
 }
 

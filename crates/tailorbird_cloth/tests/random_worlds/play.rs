@@ -1,4 +1,4 @@
-//! What happens, event by event.
+//! Play of a world, event by event.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
@@ -13,10 +13,10 @@ use crate::{
     world::{By, Event, Grip, Hold, Shape, Sheet, World as Description},
 };
 
-/// What the colliders are on that were taken off the cloth's layers.
+/// Layers of colliders that were taken off the cloth's layers.
 const NOBODY: ClothLayers = ClothLayers::new(0, 0);
 
-/// How long a collider flies that appears with a velocity \[s\].
+/// Time for which a collider flies that appears with a velocity \[s\].
 const FLIGHT: f32 = 0.5;
 
 /// The farthest way of a half-space \[m\].
@@ -25,9 +25,9 @@ const BURIED: f32 = 1.0;
 /// An entity on its way.
 struct Mover {
     entity: Entity,
-    /// Where it was put at the start.
+    /// Transform at the start.
     rest: Transform,
-    /// How far it is from there, and where it goes \[m\].
+    /// Displacement from there now, and its goal \[m\].
     way: [Vec3; 2],
     /// [m/s].
     speed: f32,
@@ -37,7 +37,7 @@ struct Mover {
     turning: f32,
 }
 
-/// What happens, and to whom.
+/// Play of the events on a cloth.
 #[derive(Resource)]
 pub struct Play {
     seconds: f32,
@@ -76,7 +76,7 @@ impl Mover {
         (self.way[1], self.turn[1]) = (self.way[0], self.turn[0]);
     }
 
-    /// Where it is after so many seconds more.
+    /// Transform after so many seconds more.
     fn advance(&mut self, seconds: f32) -> Transform {
         let toward = |[from, to]: [Vec3; 2], most: f32| from.move_towards(to, most);
         if seconds > 0.0 {
@@ -128,7 +128,7 @@ fn held(grip: &Grip, size: Vec2, rest: &[Vec3]) -> Vec<u32> {
 }
 
 impl Shape {
-    /// How far it goes that is to go this way: a half-space that goes far buries everything, and it takes long to come out.
+    /// Displacement for a wanted one: a half-space that goes far buries everything, and it takes long to come out.
     fn way(&self, by: Vec3) -> Vec3 {
         if matches!(self, Self::HalfSpace) {
             by.clamp_length_max(BURIED)
@@ -185,7 +185,7 @@ impl Play {
                         clip
                     };
                     let holder = world.spawn(Transform::IDENTITY).id();
-                    world.spawn((clip.to(holder), AttachmentOf(entity)));
+                    world.spawn((clip.to(holder), ClothAttachmentOf(entity)));
                     holder
                 }
             };
@@ -214,7 +214,7 @@ impl Play {
         for (hold, particles, holder) in &self.holds {
             for &i in particles {
                 match hold.by {
-                    By::Pin => pins.pins.push(ClothPin::new(PinSelection::Particle(i))),
+                    By::Pin => pins.pins.push(ClothPin::new(ClothSelection::Particle(i))),
                     By::Target => {
                         let at = scale * self.rest[i as usize] + self.holders[*holder].way[0];
                         pins.pins.push(ClothPin::at(i, at));
@@ -233,11 +233,11 @@ impl Play {
         let holders = self.holders.len();
         let bodies = self.bodies.len().max(1);
         match event {
-            Event::Wind {
+            Event::ClothWind {
                 velocity,
                 turbulence,
             } => {
-                let mut wind = world.resource_mut::<Wind>();
+                let mut wind = world.resource_mut::<ClothWind>();
                 wind.velocity = velocity.into();
                 wind.turbulence.speed = turbulence;
             }
@@ -287,7 +287,7 @@ impl Play {
             Event::Teleport { holder, by } => {
                 let holder = &mut self.holders[holder % holders];
                 holder.go(by.into(), f32::INFINITY);
-                if let Some(mut motion) = world.get_mut::<SampledMotion>(holder.entity) {
+                if let Some(mut motion) = world.get_mut::<ClothSampledMotion>(holder.entity) {
                     motion.teleport();
                 }
             }
@@ -331,7 +331,7 @@ impl Play {
         film.reach = film.reach.max(reach);
     }
 
-    /// What is to be moved while time stands still, if anything.
+    /// Motion while time stands still, if there is any.
     pub fn take_pause(&mut self) -> Option<(usize, Vec3)> {
         self.pause.take()
     }
@@ -351,7 +351,7 @@ impl Play {
         for (body, _) in &mut self.bodies {
             body.stop();
         }
-        let mut wind = world.resource_mut::<Wind>();
+        let mut wind = world.resource_mut::<ClothWind>();
         wind.velocity = Vec3::ZERO;
         wind.turbulence.speed = 0.0;
         let bodies = self.bodies.iter().map(|(body, shape)| Body {

@@ -22,7 +22,7 @@ pub fn happen(description: &Description) -> Film {
     sim.set_frame(Duration::from_secs_f64(1.0 / clock.fps));
     let app = &mut sim.app;
     if !description.air {
-        app.insert_resource(Wind::vacuum());
+        app.insert_resource(ClothWind::vacuum());
     }
     app.insert_resource(Film::new(clock.hz, description.air))
         .add_systems(FixedPostUpdate, film.after(ClothSystems::Writeback));

@@ -1,4 +1,4 @@
-//! What a world is, and how random ones are made.
+//! Worlds, and the distributions of random ones.
 
 use std::f32::consts::PI;
 
@@ -13,14 +13,14 @@ pub struct World {
     pub sheet: Sheet,
     pub holds: Vec<Hold>,
     pub clock: Clock,
-    /// Whether there is air, still or not, or a vacuum.
+    /// True if there is air, still or not; else a vacuum.
     pub air: bool,
     pub events: Vec<(f32, Event)>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Whether it is an irregular mesh, or a grid.
+    /// True if it is an irregular mesh, else a grid.
     pub irregular: bool,
     /// Columns and rows.
     pub particles: [u32; 2],
@@ -28,9 +28,9 @@ pub struct Sheet {
     pub size: [f32; 2],
     /// Index of [`ClothMaterial::presets`](tailorbird_cloth::prelude::ClothMaterial::presets).
     pub fabric: usize,
-    /// Whether it starts in an upright plane, or in a level one.
+    /// True if it starts in an upright plane, else in a level one.
     pub upright: bool,
-    /// Whether it is the child of an entity that moves in its place.
+    /// True if it is the child of an entity that moves in its place.
     pub child: bool,
 }
 
@@ -50,7 +50,7 @@ pub struct Hold {
     pub by: By,
 }
 
-/// Which particles are held.
+/// Particles that are held.
 #[derive(Clone, Debug)]
 pub enum Grip {
     /// The particle that is nearest to a point, as parts of width and height.
@@ -61,7 +61,7 @@ pub enum Grip {
     Edge(usize),
 }
 
-/// What holds them.
+/// Holder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// Pins, which move with the sheet's entity.
@@ -85,12 +85,12 @@ pub enum Shape {
     HalfSpace,
 }
 
-/// What happens. Holders and colliders are named by a number, of which the remainder by their count is taken; holder 0 is the sheet's
-/// entity, or its parent.
+/// Event. Holders and colliders are named by a number, of which the remainder by their count is taken; holder 0 is the sheet's entity, or
+/// its parent.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// Still air is a velocity of 0 [m/s].
-    Wind {
+    ClothWind {
         velocity: V,
         turbulence: f32,
     },
@@ -110,7 +110,7 @@ pub enum Event {
     Vanish {
         body: usize,
     },
-    /// Whether collider and cloth are on layers that meet.
+    /// Sets layers of collider and cloth that meet, or do not.
     Layers {
         body: usize,
         meet: bool,
@@ -126,7 +126,7 @@ pub enum Event {
         by: V,
         speed: f32,
     },
-    /// Elsewhere at once, told by `SampledMotion::teleport`.
+    /// Elsewhere at once, told by `ClothSampledMotion::teleport`.
     Teleport {
         holder: usize,
         by: V,
@@ -210,7 +210,7 @@ fn shape() -> impl Strategy<Value = Shape> {
     ]
 }
 
-/// What is slow, what is fast, what is a hop, and what is there at once.
+/// Speed: slow, fast, a hop, or there at once.
 fn speed() -> impl Strategy<Value = f32> {
     prop_oneof![
         3 => 0.2f32..6.0,
@@ -229,7 +229,7 @@ fn event() -> impl Strategy<Value = Event> {
     let velocity = prop_oneof![Just([0.0; 3]), vector(2.0), vector(25.0)];
     prop_oneof![
         2 => (wind, 0f32..15.0)
-            .prop_map(|(velocity, turbulence)| Event::Wind { velocity, turbulence }),
+            .prop_map(|(velocity, turbulence)| Event::ClothWind { velocity, turbulence }),
         4 => (shape(), vector(1.5), turn(), velocity)
             .prop_map(|(shape, at, turn, velocity)| Event::Appear { shape, at, turn, velocity }),
         2 => (number(), way(), speed())

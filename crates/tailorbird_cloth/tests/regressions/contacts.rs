@@ -16,14 +16,14 @@ fn tables() -> Vec<(&'static str, ClothCollider, Quat)> {
     };
     let corners: Vec<Vec3> = (0..8).map(corner).collect();
     let hull = ClothCollider::convex_hull(&corners).expect("a box");
-    let ColliderShape::ConvexHull(points) = &hull.shape else {
+    let ClothColliderShape::ConvexHull(points) = &hull.shape else {
         panic!("a hull");
     };
     let mesh = ClothCollider::trimesh(points.points(), points.triangles()).expect("a box");
     let bumps = (0..121).map(|k: u8| 0.1 + 0.02 * (2.0 * f32::from(k)).sin());
     let bumps = ClothCollider::height_field(bumps.collect(), 11, Vec2::splat(1.6)).expect("bumps");
-    let side = ColliderShape::Cuboid {
-        half_size: Vec3::new(0.29, 0.6, 0.1),
+    let side = ClothColliderShape::Cuboid {
+        size: Vec3::new(0.58, 1.2, 0.2),
     };
     let sides = [-0.3, 0.3].map(|x| (Isometry3d::from_translation(Vec3::X * x), side.clone()));
     let compound = ClothCollider::compound(sides).expect("two");
@@ -84,7 +84,7 @@ fn velocity_growing_without_end_on_a_resting_contact() {
     }
 }
 
-/// What has next to no mass is struck by what has much, moved by the game or by itself.
+/// A particle of next to no mass is struck by a heavy body, moved by the game or by itself.
 #[test]
 fn very_low_mass_per_particle_exploding() {
     const SPEED: f32 = 2.0;
@@ -143,15 +143,15 @@ fn push_ball(
     inv_mass: f32,
 ) {
     let inv_inertia = inv_mass / (0.4 * radius * radius);
-    let mut colliders = sheet.sim.resource_mut::<ExternalColliders>();
+    let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
     colliders.push(external(
         entity,
-        ColliderShape::Sphere { radius },
+        ClothColliderShape::Sphere { radius },
         [
             Isometry3d::from_translation(start),
             Isometry3d::from_translation(end),
         ],
-        Some(ColliderBody {
+        Some(ClothColliderBody {
             body: entity,
             inv_mass: Vec3::splat(inv_mass),
             inv_inertia: Mat3::IDENTITY * inv_inertia,
@@ -162,7 +162,7 @@ fn push_ball(
     ));
 }
 
-/// Where tiles or balls of a square of 2 m are.
+/// Positions of tiles or balls of a square of 2 m.
 fn places(side: u32) -> impl Iterator<Item = Vec3> {
     let at = move |k: u32| 2.0 * (k as f32 + 0.5) / side as f32 - 1.0;
     (0..side * side).map(move |k| Vec3::new(at(k % side), at(k / side), 0.0))

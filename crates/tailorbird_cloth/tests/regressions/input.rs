@@ -40,7 +40,7 @@ const SPEED: f32 = 10.0;
 #[test]
 fn a_velocity_spike_when_a_kinematic_vertex_is_applied_only_in_the_first_substep() {
     // Pins that the game moves.
-    let mut sheet = noted(ClothPins::edges([GridEdge::Top]));
+    let mut sheet = noted(ClothPins::edges([ClothEdge::Top]));
     let rest: Vec<Vec3> = sheet.particles().positions().take(9).collect();
     for step in 1..=20u8 {
         let way = Vec3::X * SPEED * DT * f32::from(step);
@@ -149,11 +149,11 @@ fn the_cloth_vanishing_after_an_extreme_move() {
             // Something that is told to go through the sheet within a step, which nothing stops.
             let aside = |z: f32| Isometry3d::from_translation(Vec3::new(0.3, 0.2, z));
             let way = far.min(1e4);
-            let mut colliders = sheet.sim.resource_mut::<ExternalColliders>();
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
             colliders.push(external(
                 plate,
-                ColliderShape::Cuboid {
-                    half_size: Vec3::new(0.4, 0.3, 0.01),
+                ClothColliderShape::Cuboid {
+                    size: Vec3::new(0.8, 0.6, 0.02),
                 },
                 [aside(-way), aside(way)],
                 None,
@@ -177,7 +177,7 @@ fn motion_depending_on_dt_squared() {
     const FRAMES: [f32; 5] = [30.0, 144.0, 60.0, 20.0, 100.0];
     for pushed in [false, true] {
         let mut sim = Sim::stepping_in(Update).without_gravity();
-        sim.app.insert_resource(Wind::vacuum());
+        sim.app.insert_resource(ClothWind::vacuum());
         let cloth = Cloth::grid(Vec2::splat(0.5), UVec2::splat(7)).centered();
         let material = ClothMaterial {
             damping: 0.0,

@@ -31,7 +31,7 @@ fn double_sided_faces() {
         let mut sheet = Sheet::new(&Scene {
             cloth: Some(sheet(12, two_sides)),
             pins: ClothPins::particles([0]),
-            wind: Wind::steady(Vec3::new(3.0, 1.0, 4.0)),
+            wind: ClothWind::steady(Vec3::new(3.0, 1.0, 4.0)),
             sphere: Some((Vec3::new(0.0, 0.0, -0.8), 0.3)),
             ..Scene::default()
         });

@@ -29,7 +29,7 @@ fn ball() -> Vec<Vec3> {
 }
 
 fn compound() -> ClothCollider {
-    let arm = ColliderShape::Capsule {
+    let arm = ClothColliderShape::Capsule {
         radius: 0.05,
         half_length: 0.2,
     };
@@ -37,7 +37,7 @@ fn compound() -> ClothCollider {
     let turned = Isometry3d::new(Vec3::Y * 0.5, Quat::from_rotation_x(0.3));
     ClothCollider::compound([
         (Isometry3d::IDENTITY, arm),
-        (turned, ColliderShape::TriMesh(mesh)),
+        (turned, ClothColliderShape::TriMesh(mesh)),
     ])
     .unwrap()
 }
@@ -96,11 +96,11 @@ fn a_collider_without_its_options_has_their_defaults() {
 fn a_compound_within_a_compound_is_taken_apart() {
     let place = "(rotation: (0, 0, 0, 1), translation: (0, 1, 0))";
     let inner = format!("Compound((parts: [({place}, Sphere(radius: 1))]))");
-    let outer: ColliderShape = read(&format!("Compound((parts: [({place}, {inner})]))"));
-    let ColliderShape::Compound(outer) = outer else {
+    let outer: ClothColliderShape = read(&format!("Compound((parts: [({place}, {inner})]))"));
+    let ClothColliderShape::Compound(outer) = outer else {
         panic!("{outer:?}");
     };
-    let [(at, ColliderShape::Sphere { .. })] = outer.parts() else {
+    let [(at, ClothColliderShape::Sphere { .. })] = outer.parts() else {
         panic!("{outer:?}");
     };
     assert_eq!(Vec3::from(at.translation), Vec3::Y * 2.0);

@@ -1,4 +1,4 @@
-//! What a game sets goes into files and comes back, and a wrong file is an error.
+//! Settings of a game go into files and come back, and a wrong file is an error.
 
 #![cfg(test)]
 #![cfg(feature = "serialize")]
@@ -13,13 +13,13 @@ use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
 
-/// What comes back from a RON file.
+/// Value after it was written to RON and read.
 fn through_ron<T: Serialize + DeserializeOwned>(value: &T) -> T {
     let text = ron::to_string(value).unwrap();
     ron::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// What comes back from a JSON file.
+/// Value after it was written to JSON and read.
 fn through_json<T: Serialize + DeserializeOwned>(value: &T) -> T {
     let text = serde_json::to_string(value).unwrap();
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))

@@ -14,6 +14,7 @@ fn shapes_come_back() {
         shape: ClothShape::Mesh {
             positions: corners.to_vec(),
             indices: vec![0, 1, 2],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::new(0.25, 1.0)],
             weld_distance: 0.002,
         },
     });
@@ -45,29 +46,29 @@ fn materials_come_back() {
 
 #[test]
 fn pins_come_back() {
-    let mut pins = ClothPins::corners(GridCorner::ALL)
+    let mut pins = ClothPins::corners(ClothCorner::ALL)
         .with(ClothPin::at(7, Vec3::new(0.1, 0.2, 0.3)))
-        .with(ClothPin::new(PinSelection::Particles(vec![1, 2, 3])))
-        .with(ClothPin::new(PinSelection::Cell(UVec2::new(2, 3))))
-        .with(ClothPin::new(PinSelection::Within {
+        .with(ClothPin::new(ClothSelection::Particles(vec![1, 2, 3])))
+        .with(ClothPin::new(ClothSelection::Cell(UVec2::new(2, 3))))
+        .with(ClothPin::new(ClothSelection::Within {
             center: Vec3::X,
             radius: 0.25,
         }))
         .with(ClothPin {
-            author: PinAuthor::User,
+            author: ClothPinAuthor::User,
             ..ClothPin::at(9, Vec3::Y)
         });
     for edge in [
-        GridEdge::Top,
-        GridEdge::Bottom,
-        GridEdge::Left,
-        GridEdge::Right,
+        ClothEdge::Top,
+        ClothEdge::Bottom,
+        ClothEdge::Left,
+        ClothEdge::Right,
     ] {
-        pins = pins.with(ClothPin::new(PinSelection::Edge(edge)));
+        pins = pins.with(ClothPin::new(ClothSelection::Edge(edge)));
     }
     comes_back(&pins);
     let written_by_hand: ClothPins = read("(pins: [(selection: Corner(TopLeft))])");
-    assert_eq!(written_by_hand, ClothPins::corners([GridCorner::TopLeft]));
+    assert_eq!(written_by_hand, ClothPins::corners([ClothCorner::TopLeft]));
 }
 
 #[test]
@@ -93,7 +94,7 @@ fn inertia_and_sleep_come_back() {
         max_angular_speed: 3.0,
         teleport_speed: 50.0,
         teleport_angle: 1.5,
-        teleport: TeleportMode::Reset,
+        teleport: ClothTeleportMode::Reset,
     };
     comes_back(&inertia);
     assert_eq!(read::<ClothInertia>("()"), ClothInertia::default());
@@ -111,9 +112,9 @@ fn inertia_and_sleep_come_back() {
 fn what_has_no_limit_comes_back_without_one() {
     comes_back(&ClothInertia::default());
     comes_back(&ClothMotionConstraints::default());
-    let free = PerParticle::Each(vec![0.0, f32::INFINITY, 2.0]);
+    let free = ClothPerParticle::Each(vec![0.0, f32::INFINITY, 2.0]);
     comes_back(&free);
-    comes_back(&PerParticle::All(f32::INFINITY));
+    comes_back(&ClothPerParticle::All(f32::INFINITY));
     assert_eq!(
         serde_json::to_string(&free).unwrap(),
         r#"{"Each":[0.0,null,2.0]}"#
@@ -123,11 +124,11 @@ fn what_has_no_limit_comes_back_without_one() {
 #[test]
 fn settings_come_back() {
     for instruction_set in [
-        InstructionSet::Auto,
-        InstructionSet::Scalar,
-        InstructionSet::Sse2,
-        InstructionSet::Avx2,
-        InstructionSet::Avx512,
+        ClothInstructionSet::Auto,
+        ClothInstructionSet::Scalar,
+        ClothInstructionSet::Sse2,
+        ClothInstructionSet::Avx2,
+        ClothInstructionSet::Avx512,
     ] {
         comes_back(&ClothSettings {
             gravity: Vec3::new(0.1, -1.62, 0.0),
@@ -148,17 +149,17 @@ fn settings_come_back() {
 
 #[test]
 fn wind_comes_back() {
-    let gusts = Gusts {
+    let gusts = ClothGusts {
         strength: 0.4,
         period: 1.7,
     };
-    let turbulence = Turbulence {
+    let turbulence = ClothTurbulence {
         speed: 0.6,
         scale: 0.9,
         seed: 3,
     };
-    for model in [WindModel::Aerodynamic, WindModel::Classic] {
-        comes_back(&Wind {
+    for model in [ClothWindModel::Aerodynamic, ClothWindModel::Classic] {
+        comes_back(&ClothWind {
             velocity: Vec3::new(1.0, 0.2, -3.0),
             gusts,
             turbulence,
@@ -167,13 +168,12 @@ fn wind_comes_back() {
         });
     }
     for shape in [
-        WindShape::Everywhere,
-        WindShape::Cuboid {
-            half_size: Vec3::new(1.0, 2.0, 3.0),
+        ClothWindShape::Cuboid {
+            size: Vec3::new(1.0, 2.0, 3.0),
         },
-        WindShape::Sphere { radius: 4.0 },
+        ClothWindShape::Sphere { radius: 4.0 },
     ] {
-        comes_back(&WindZone {
+        comes_back(&ClothWindZone {
             shape,
             velocity: Vec3::Z,
             falloff: 0.5,
@@ -181,35 +181,35 @@ fn wind_comes_back() {
             turbulence,
         });
     }
-    let breeze: Wind = read("(velocity: (1, 0, 0), gusts: (strength: 0.5))");
-    assert_eq!(breeze.gusts.period, Gusts::default().period);
-    assert_eq!(breeze.air_density, Wind::default().air_density);
+    let breeze: ClothWind = read("(velocity: (1, 0, 0), gusts: (strength: 0.5))");
+    assert_eq!(breeze.gusts.period, ClothGusts::default().period);
+    assert_eq!(breeze.air_density, ClothWind::default().air_density);
 }
 
 #[test]
 fn attachments_come_back() {
-    let edge = ClothAttachment::edge(GridEdge::Left);
+    let edge = ClothAttachment::edge(ClothEdge::Left);
     comes_back(&edge);
     comes_back(&ClothAttachment {
         compliance: 0.01,
         ..edge.with_points([Vec3::X, Vec3::Y]).with_break_force(30.0)
     });
     let entity = Entity::from_raw_u32(12).unwrap();
-    comes_back(&AttachmentOf(entity));
-    comes_back(&AttachedTo(entity));
+    comes_back(&ClothAttachmentOf(entity));
+    comes_back(&ClothAttachedTo(entity));
 }
 
 #[test]
 fn motion_constraints_and_targets_come_back() {
-    comes_back(&ClothMotionConstraints::within(vec![0.0, 0.5, 1.0]).with_backstop(0.01, 0.3));
-    for space in [TargetSpace::Frame, TargetSpace::World] {
+    comes_back(&ClothMotionConstraints::at_most(vec![0.0, 0.5, 1.0]).with_backstop(0.01, 0.3));
+    for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         let mut targets = ClothMotionTargets::in_space(space);
         targets.set([Vec3::X, Vec3::Y], [Vec3::Z, Vec3::NEG_Z]);
         comes_back(&targets);
     }
 }
 
-/// Where a number is small, a file is not the place to lose digits.
+/// Small numbers keep their digits in a file.
 #[test]
 fn numbers_come_back_with_all_their_bits() {
     let odd = ClothMaterial {

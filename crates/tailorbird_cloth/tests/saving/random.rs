@@ -36,25 +36,25 @@ fn material() -> impl Strategy<Value = ClothMaterial> {
     })
 }
 
-fn selection() -> impl Strategy<Value = PinSelection> {
+fn selection() -> impl Strategy<Value = ClothSelection> {
     prop_oneof![
-        any::<u32>().prop_map(PinSelection::Particle),
-        vec(any::<u32>(), 0..5).prop_map(PinSelection::Particles),
-        any::<(u32, u32)>().prop_map(|(x, y)| PinSelection::Cell(UVec2::new(x, y))),
-        prop::sample::select(GridCorner::ALL.to_vec()).prop_map(PinSelection::Corner),
+        any::<u32>().prop_map(ClothSelection::Particle),
+        vec(any::<u32>(), 0..5).prop_map(ClothSelection::Particles),
+        any::<(u32, u32)>().prop_map(|(x, y)| ClothSelection::Cell(UVec2::new(x, y))),
+        prop::sample::select(ClothCorner::ALL.to_vec()).prop_map(ClothSelection::Corner),
         prop::sample::select(vec![
-            GridEdge::Top,
-            GridEdge::Bottom,
-            GridEdge::Left,
-            GridEdge::Right,
+            ClothEdge::Top,
+            ClothEdge::Bottom,
+            ClothEdge::Left,
+            ClothEdge::Right,
         ])
-        .prop_map(PinSelection::Edge),
-        (point(), number()).prop_map(|(center, radius)| PinSelection::Within { center, radius }),
+        .prop_map(ClothSelection::Edge),
+        (point(), number()).prop_map(|(center, radius)| ClothSelection::Within { center, radius }),
     ]
 }
 
 fn pin() -> impl Strategy<Value = ClothPin> {
-    let author = prop_oneof![Just(PinAuthor::Scene), Just(PinAuthor::User)];
+    let author = prop_oneof![Just(ClothPinAuthor::Scene), Just(ClothPinAuthor::User)];
     (selection(), option::of(point()), author).prop_map(|(selection, target, author)| ClothPin {
         selection,
         target,

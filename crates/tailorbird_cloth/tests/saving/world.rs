@@ -93,24 +93,24 @@ fn a_world_comes_back(all: bool) {
     let flag = before.spawn((
         Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(12, 8)),
         ClothMaterial::silk(),
-        ClothPins::corners([GridCorner::BottomLeft]),
+        ClothPins::corners([ClothCorner::BottomLeft]),
         ClothSolver::GaussSeidel,
         ClothShading::Flat,
         ClothInertia::none(),
         ClothSleep::never(),
         ClothLayers::new(1, 2),
-        ClothMotionConstraints::within(0.5),
-        ClothMotionTargets::in_space(TargetSpace::World),
+        ClothMotionConstraints::at_most(0.5),
+        ClothMotionTargets::in_space(ClothTargetSpace::World),
         Transform::from_xyz(0.0, 2.0, 0.0),
     ));
-    let attachment = ClothAttachment::edge(GridEdge::Left).with_break_force(500.0);
-    let hold = before.spawn((attachment.to(pole), AttachmentOf(flag)));
+    let attachment = ClothAttachment::edge(ClothEdge::Left).with_break_force(500.0);
+    let hold = before.spawn((attachment.to(pole), ClothAttachmentOf(flag)));
     let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let rock = before.spawn((
         ClothCollider::convex_hull(&points).unwrap(),
         Transform::from_xyz(5.0, 0.0, 0.0),
     ));
-    let fan = before.spawn(WindZone::sphere(2.0, Vec3::X));
+    let fan = before.spawn(ClothWindZone::sphere(2.0, Vec3::X));
     before.steps(4);
 
     let file = save(&before.app, &[pole, flag, hold, rock, fan], all);
@@ -138,11 +138,11 @@ fn a_world_comes_back(all: bool) {
         (flag, flag_after): ClothLayers, ClothMotionConstraints, ClothMotionTargets, Transform;
         (hold, hold_after): ClothAttachment;
         (rock, rock_after): ClothCollider, Transform;
-        (fan, fan_after): WindZone, Transform;
+        (fan, fan_after): ClothWindZone, Transform;
     }
     let world = after.app.world();
-    assert_eq!(world.get(hold_after), Some(&AttachmentOf(flag_after)));
-    assert_eq!(world.get(hold_after), Some(&AttachedTo(pole_after)));
+    assert_eq!(world.get(hold_after), Some(&ClothAttachmentOf(flag_after)));
+    assert_eq!(world.get(hold_after), Some(&ClothAttachedTo(pole_after)));
 
     // What comes with a cloth is not in the file, and there all the same: the cloth hangs on its pole.
     after.steps(8);
@@ -182,7 +182,7 @@ fn resources_are_known_to_reflection() {
         iterations: 3,
         ..ClothSettings::default()
     };
-    let wind = Wind::steady(Vec3::X);
+    let wind = ClothWind::steady(Vec3::X);
     for value in [
         Box::new(settings) as Box<dyn bevy_reflect::Reflect>,
         Box::new(wind),

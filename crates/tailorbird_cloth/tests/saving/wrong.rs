@@ -5,7 +5,7 @@ use tailorbird_cloth::prelude::*;
 
 use crate::read;
 
-/// What is wrong with a RON file.
+/// Error of a RON file.
 fn wrong<T: DeserializeOwned>(text: &str) -> String {
     match ron::from_str::<T>(text) {
         Ok(_) => panic!("nothing wrong: {text}"),
@@ -22,7 +22,7 @@ fn says(error: &str, what: &str) {
 fn measures_that_are_not_above_zero() {
     for radius in ["NaN", "inf", "0", "-1.0"] {
         let shape = format!("Sphere(radius: {radius})");
-        let error = wrong::<ColliderShape>(&shape);
+        let error = wrong::<ClothColliderShape>(&shape);
         says(&error, "ClothCollider radius is");
         says(&error, "must be above 0 and finite [m]");
         says(
@@ -31,17 +31,17 @@ fn measures_that_are_not_above_zero() {
         );
         let place = "(rotation: (0, 0, 0, 1), translation: (0, 0, 0))";
         says(
-            &wrong::<ColliderShape>(&format!("Compound((parts: [({place}, {shape})]))")),
+            &wrong::<ClothColliderShape>(&format!("Compound((parts: [({place}, {shape})]))")),
             "ClothCollider radius is",
         );
     }
     says(
-        &wrong::<ColliderShape>("Capsule(radius: 1, half_length: NaN)"),
+        &wrong::<ClothColliderShape>("Capsule(radius: 1, half_length: NaN)"),
         "ClothCollider half_length is NaN",
     );
     says(
-        &wrong::<ColliderShape>("Cuboid(half_size: (1, -1, 1))"),
-        "ClothCollider half_size is -1",
+        &wrong::<ClothColliderShape>("Cuboid(size: (1, -1, 1))"),
+        "ClothCollider size is -1",
     );
     says(
         &wrong::<ClothCollider>("(shape: HalfSpace, friction: -0.5)"),
@@ -57,15 +57,15 @@ fn measures_that_are_not_above_zero() {
 fn a_mesh_with_an_index_out_of_range() {
     let corners = "positions: [(0, 0, 0), (1, 0, 0), (0, 1, 0)]";
     says(
-        &wrong::<ColliderShape>(&format!("TriMesh(({corners}, triangles: [(0, 1, 3)]))")),
+        &wrong::<ClothColliderShape>(&format!("TriMesh(({corners}, triangles: [(0, 1, 3)]))")),
         "triangle mesh indices[2] is 3, must be below the number of positions, 3",
     );
     says(
-        &wrong::<ColliderShape>(&format!("TriMesh(({corners}, triangles: []))")),
+        &wrong::<ClothColliderShape>(&format!("TriMesh(({corners}, triangles: []))")),
         "triangle mesh has 0 triangles",
     );
     says(
-        &wrong::<ColliderShape>("TriMesh((positions: [(NaN, 0, 0)], triangles: [(0, 0, 0)]))"),
+        &wrong::<ClothColliderShape>("TriMesh((positions: [(NaN, 0, 0)], triangles: [(0, 0, 0)]))"),
         "triangle mesh points[0]",
     );
 }
@@ -73,17 +73,17 @@ fn a_mesh_with_an_index_out_of_range() {
 #[test]
 fn a_hull_of_nothing() {
     says(
-        &wrong::<ColliderShape>("ConvexHull((points: []))"),
+        &wrong::<ClothColliderShape>("ConvexHull((points: []))"),
         "convex hull of 0 points has no volume",
     );
     says(
-        &wrong::<ColliderShape>(
+        &wrong::<ClothColliderShape>(
             "ConvexHull((points: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]))",
         ),
         "convex hull of 4 points has no volume",
     );
     says(
-        &wrong::<ColliderShape>("ConvexHull((points: [(0, 0, inf)]))"),
+        &wrong::<ClothColliderShape>("ConvexHull((points: [(0, 0, inf)]))"),
         "convex hull points[0]",
     );
 }
@@ -91,19 +91,23 @@ fn a_hull_of_nothing() {
 #[test]
 fn a_height_field_that_is_no_grid() {
     says(
-        &wrong::<ColliderShape>("HeightField((heights: [0, 1, 2], columns: 2, size: (1, 1)))"),
+        &wrong::<ClothColliderShape>("HeightField((heights: [0, 1, 2], columns: 2, size: (1, 1)))"),
         "height field has 3 heights in 2 columns",
     );
     says(
-        &wrong::<ColliderShape>("HeightField((heights: [], columns: 0, size: (1, 1)))"),
+        &wrong::<ClothColliderShape>("HeightField((heights: [], columns: 0, size: (1, 1)))"),
         "height field has 0 heights in 0 columns",
     );
     says(
-        &wrong::<ColliderShape>("HeightField((heights: [0, 1, NaN, 3], columns: 2, size: (1, 1)))"),
+        &wrong::<ClothColliderShape>(
+            "HeightField((heights: [0, 1, NaN, 3], columns: 2, size: (1, 1)))",
+        ),
         "HeightField height is NaN",
     );
     says(
-        &wrong::<ColliderShape>("HeightField((heights: [0, 1, 2, 3], columns: 2, size: (1, 0)))"),
+        &wrong::<ClothColliderShape>(
+            "HeightField((heights: [0, 1, 2, 3], columns: 2, size: (1, 0)))",
+        ),
         "HeightField size is 0",
     );
 }
@@ -111,22 +115,22 @@ fn a_height_field_that_is_no_grid() {
 #[test]
 fn a_compound_of_nothing_or_nowhere() {
     says(
-        &wrong::<ColliderShape>("Compound((parts: []))"),
+        &wrong::<ClothColliderShape>("Compound((parts: []))"),
         "compound has 0 parts",
     );
     let nowhere = "(rotation: (0, 0, 0, 1), translation: (0, NaN, 0))";
     says(
-        &wrong::<ColliderShape>(&format!("Compound((parts: [({nowhere}, HalfSpace)]))")),
+        &wrong::<ClothColliderShape>(&format!("Compound((parts: [({nowhere}, HalfSpace)]))")),
         "Compound part place is",
     );
 }
 
 #[test]
 fn the_same_in_json() {
-    let hull = serde_json::from_str::<ColliderShape>(r#"{"ConvexHull":{"points":[]}}"#);
+    let hull = serde_json::from_str::<ClothColliderShape>(r#"{"ConvexHull":{"points":[]}}"#);
     says(&hull.unwrap_err().to_string(), "convex hull of 0 points");
     // JSON has no NaN: this is what is written for it.
-    let ball = serde_json::from_str::<ColliderShape>(r#"{"Sphere":{"radius":null}}"#);
+    let ball = serde_json::from_str::<ClothColliderShape>(r#"{"Sphere":{"radius":null}}"#);
     says(&ball.unwrap_err().to_string(), "null");
 }
 
@@ -146,25 +150,25 @@ fn fields_that_do_not_exist() {
         ClothMaterial: "(nonsense: 0.5)",
         ClothPins: "(nonsense: 0.5)",
         ClothPin: "(selection: Particle(0), nonsense: 0.5)",
-        PinSelection: "Within(center: (0, 0, 0), radius: 1, nonsense: 0.5)",
+        ClothSelection: "Within(center: (0, 0, 0), radius: 1, nonsense: 0.5)",
         ClothWeights: "(nonsense: 0.5)",
         ClothInertia: "(nonsense: 0.5)",
         ClothSleep: "(nonsense: 0.5)",
         ClothSettings: "(nonsense: 0.5)",
-        Wind: "(nonsense: 0.5)",
-        WindZone: "(nonsense: 0.5)",
-        WindShape: "Sphere(radius: 1, nonsense: 0.5)",
-        Gusts: "(nonsense: 0.5)",
-        Turbulence: "(nonsense: 0.5)",
+        ClothWind: "(nonsense: 0.5)",
+        ClothWindZone: "(nonsense: 0.5)",
+        ClothWindShape: "Sphere(radius: 1, nonsense: 0.5)",
+        ClothGusts: "(nonsense: 0.5)",
+        ClothTurbulence: "(nonsense: 0.5)",
         ClothLayers: "(nonsense: 0.5)",
         ClothCollider: "(shape: HalfSpace, nonsense: 0.5)",
-        ColliderShape: "Sphere(radius: 1, nonsense: 0.5)",
+        ClothColliderShape: "Sphere(radius: 1, nonsense: 0.5)",
         ClothAttachment: "(nonsense: 0.5)",
         ClothMotionConstraints: "(nonsense: 0.5)",
         ClothMotionTargets: "(nonsense: 0.5)",
     }
     says(
-        &wrong::<ColliderShape>("TriMesh((positions: [], triangles: [], nonsense: 1))"),
+        &wrong::<ClothColliderShape>("TriMesh((positions: [], triangles: [], nonsense: 1))"),
         "nonsense",
     );
 }
@@ -174,7 +178,7 @@ fn a_field_that_must_be_there() {
     says(&wrong::<Cloth>("()"), "shape");
     says(&wrong::<ClothPin>("()"), "selection");
     says(&wrong::<ClothCollider>("(friction: 0.5)"), "shape");
-    says(&wrong::<ColliderShape>("Sphere()"), "radius");
+    says(&wrong::<ClothColliderShape>("Sphere()"), "radius");
 }
 
 /// Only what has no limit may be none, and only a number may be a limit.
@@ -188,11 +192,11 @@ fn a_limit_that_is_no_number() {
     says(&speed.unwrap_err().to_string(), "null");
 }
 
-/// What code can set as well is read, and reported when it is used.
+/// Values that code can set as well are read, and reported when they are used.
 #[test]
 fn other_values_are_checked_where_they_are_used() {
     let material: ClothMaterial = read("(friction: NaN)");
     assert_eq!(material.errors().len(), 1);
-    let zone: WindZone = read("(shape: Sphere(radius: -1))");
+    let zone: ClothWindZone = read("(shape: Sphere(radius: -1))");
     assert_eq!(zone.errors().len(), 1);
 }

@@ -146,7 +146,7 @@ pub fn set_damping(world: &mut World, body: Entity, rate: f32) {
     damping.angular_damping = rate;
 }
 
-/// How deep a point in the body's axes is inside its collider \[m\].
+/// Depth of a point in the body's axes inside its collider \[m\].
 pub fn depth(world: &World, body: Entity, point: Vec3) -> f32 {
     let shape = &world.get::<Collider>(body).unwrap().raw;
     if let Some(field) = shape.as_heightfield() {

@@ -1,24 +1,24 @@
 //! Bodies that cloth pushes.
 //!
-//! Within a step each cloth moves bodies by itself, in two ways, and what one of the two gets the other loses, in linear and in
-//! angular momentum.
+//! Within a step each cloth moves bodies by itself, in two ways. Cloth and body exchange linear and angular momentum: one gets as much as
+//! the other loses.
 //!
-//! **Impacts**, before and after the constraints are solved: a contact is an inelastic impact of a particle of the inverse mass w on
-//! a point of a body, whose inverse mass is W = 1/m + (r × n)·I⁻¹(r × n) there. The impulse λ = depth/(w + W) moves the particle
-//! by wλ and the body by Wλ the other way, so that both meet; friction and what separates them are impulses between the same
-//! two points. Impacts are taken one by one, each with the body as the one before has left it. No impact adds energy, however
-//! light the body is.
+//! **Impacts**, before and after the constraints are solved: a contact is an inelastic impact of a particle of the inverse mass w on a
+//! point of a body, whose inverse mass is W = 1/m + (r × n)·I⁻¹(r × n) there. The impulse λ = depth/(w + W) moves the particle by wλ and
+//! the body by Wλ in the opposite direction, so that both meet; friction and separation are impulses between the same two points. Impacts
+//! are taken one by one, each with the body as the impact before has left it. No impact adds energy, however light the body is.
 //!
-//! **Loads**, while the constraints are solved ([`Coupling`]): a body is much heavier than a particle, so that impacts alone hand on no
-//! more than the momentum of one row of particles in a substep, and a heavy body would fall through. So each of the k particles in
-//! contact carries one k-th of the body with it where it is pushed along the contact's normal n (mass splitting, Tonge et al.
-//! 2012): its inverse mass is w (I − s n nᵀ), s = w/(w + k W). That is the form in which the lines know of contacts, with √s n
-//! for a normal. They add up what pushed each particle, and the body gets the part s of it. What would pull at the body is
-//! given to the particle alone, and what would meet nothing.
+//! **Loads**, while the constraints are solved ([`Coupling`]): a body is much heavier than a particle, so that impacts alone transfer no
+//! more than the momentum of one row of particles in a substep, and a heavy body would fall through. So each of the k particles in contact
+//! carries one k-th of the body with it where it is pushed along the contact's normal n (mass splitting, Tonge et al. 2012): its inverse
+//! mass is w (I − s n nᵀ), s = w/(w + k W). The lines know contacts in this form, with √s n for a normal. They add up the impulses on each
+//! particle, and the body gets the part s of them. Impulses that would pull at the body, and impulses without contact, go to the particle
+//! alone.
 //!
-//! In a substep each particle makes good all of what the cloth is stretched by, and the body moves by the mean: a spring between the
-//! two whose frequency is that of the substeps. Without pins it stays, so that momentum is kept; what pins pull moves the body
-//! but gives it no velocity beyond what stops it, so that it does not bounce on a spring that is none of the fabric's.
+//! In a substep each particle corrects the whole stretch of the cloth, and the body moves by the mean: a spring between the two whose
+//! frequency is that of the substeps. Without pins the body gets the full velocity of that motion, so that momentum is kept.
+//! Corrections caused by pins change the body's position, but its velocity only as far as needed to stop it: otherwise it would bounce
+//! on a spring that is none of the fabric's.
 
 use bevy_math::{Isometry3d, Quat, Vec3};
 
@@ -33,35 +33,35 @@ use crate::{
 /// Time in which a cloth forgets a load \[s\].
 const LOADED: f32 = 0.25;
 
-/// The bodies as one cloth has moved them in this step.
+/// Bodies as one cloth has moved them in this step.
 #[derive(Clone, Debug, Default)]
 pub struct Bodies {
     pub list: Vec<Proxy>,
 }
 
-/// What cloth did to a body in a step, in world axes.
+/// Effect of cloth on a body in a step, in world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reaction {
-    /// Momentum that the body got \[N s\].
+    /// Momentum given to the body \[N s\].
     pub impulse: Vec3,
     /// Angular momentum about its centre of mass \[N m s\].
     pub angular_impulse: Vec3,
-    /// By how far cloth moved it within the step \[m\].
+    /// Displacement by cloth within the step \[m\].
     pub translation: Vec3,
-    /// By how much cloth turned it about its centre of mass: axis times angle \[rad\].
+    /// Rotation by cloth about its centre of mass: axis times angle \[rad\].
     pub rotation: Vec3,
 }
 
-/// What a cloth did to a body so far in this step, in world axes.
+/// Effect of one cloth on a body so far in this step, in world axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Proxy {
     pub done: Reaction,
-    /// Where the body was moved to and turned by at the start of the substep.
+    /// Displacement and rotation by cloth at the start of the substep.
     start: (Vec3, Vec3),
-    /// Velocities that it has got [m/s], [rad/s].
+    /// Velocities that it has gained [m/s], [rad/s].
     gained: (Vec3, Vec3),
     pub touched: bool,
-    /// How many particles are coupled with it.
+    /// Number of particles that are coupled with it.
     pub coupled: u32,
 }
 
@@ -70,12 +70,12 @@ impl Bodies {
         self.list.clear();
     }
 
-    /// Whether this cloth touched any.
+    /// Returns whether this cloth touched any.
     pub fn touched(&self) -> bool {
         self.list.iter().any(|proxy| proxy.touched)
     }
 
-    /// Takes notice of the force in a step of this length \[s\]; an earlier one is forgotten within [`LOADED`].
+    /// Updates the load by the force in a step of this length \[s\]; an earlier load is forgotten within [`LOADED`].
     pub fn note_load(&self, seconds: f32, load: &mut f32) {
         let impulses = self.list.iter().filter(|proxy| proxy.touched);
         let force = impulses
@@ -88,14 +88,14 @@ impl Bodies {
         }
     }
 
-    /// Whether this cloth touched one in this step that cloth can move.
+    /// Returns whether this cloth touched a movable body in this step.
     pub fn pushed(&self, colliders: &Colliders) -> bool {
         let pairs = self.list.iter().zip(&colliders.bodies);
         let mut touched = pairs.filter(|(proxy, _)| proxy.touched);
         touched.any(|(_, body)| body.inv_mass != Vec3::ZERO)
     }
 
-    /// One for each body of the step, and on by the velocity that they have got.
+    /// Makes a proxy for each body of the step, and moves proxies on by the velocity that they have gained.
     pub fn advance(&mut self, bodies: &[Body], substep: &Substep) {
         if self.list.len() != bodies.len() {
             self.list.clear();
@@ -110,8 +110,8 @@ impl Bodies {
 }
 
 impl Proxy {
-    /// Where a part of the body is that was to be at `at`, with the body's centre of mass at `center`: at the start or at the end
-    /// of the substep.
+    /// Pose of a part of the body as displaced by cloth. Without cloth it would be at `at`, with the body's centre of mass at `center`: at
+    /// the start or at the end of the substep.
     pub fn displaced(&self, at: Isometry3d, center: Vec3, at_end: bool) -> Isometry3d {
         let (moved, turned) = if at_end {
             (self.done.translation, self.done.rotation)
@@ -126,7 +126,7 @@ impl Proxy {
         )
     }
 
-    /// Gives it an impulse \[N s\] · substep at an arm from its centre of mass \[m\].
+    /// Applies an impulse \[N s\] · substep at an arm from the centre of mass \[m\].
     fn push(&mut self, body: &Body, arm: Vec3, impulse: Vec3, seconds: f32, moves: bool) {
         if impulse == Vec3::ZERO {
             return;
@@ -146,13 +146,13 @@ impl Proxy {
     }
 }
 
-/// A body in a substep.
+/// State of a body in a substep.
 pub struct Struck<'a> {
     pub body: &'a Body,
     pub proxy: &'a mut Proxy,
-    /// Where the collider was to be at the start and at the end of the substep, in the world.
+    /// Poses of the collider at the start and at the end of the substep, without cloth, in the world.
     pub given: [Isometry3d; 2],
-    /// Its centre of mass was to be here at the end, and was here at the start \[m\].
+    /// Centre of mass at the end and at the start of the substep, without cloth \[m\].
     pub center: Vec3,
     pub center_before: Vec3,
     pub friction: f32,
@@ -164,18 +164,18 @@ pub struct Struck<'a> {
 pub struct Coupling {
     /// The collider.
     pub collider: ColliderId,
-    /// Which of the bodies of the step.
+    /// Index in the list of bodies of the step.
     pub body: usize,
     pub particle: usize,
     /// Unit normal, in the axes of the cloth's frame.
     pub normal: Vec3,
     /// √s.
     pub share: f32,
-    /// The part of the body's mass \[kg\].
+    /// Part of the body's mass that the particle carries \[kg\].
     pub mass: f32,
-    /// What pressed the two together in this substep \[N s\] · substep.
+    /// Impulse between the two in this substep \[N s\] · substep.
     pub pressed: f32,
-    /// Where tethers moved the particle along the normal \[m\], against the body alone.
+    /// Displacement of the particle by tethers along the normal \[m\], against the body alone.
     pub held: f32,
 }
 
@@ -200,19 +200,19 @@ impl Coupling {
     }
 }
 
-/// What many particles together do to a body in a substep.
+/// Sum of the impulses of many particles on a body in a substep.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pull {
-    /// \[N s\] · substep.
+    /// Impulse \[N s\] · substep.
     impulse: Vec3,
-    /// About the centre of mass \[N m s\] · substep.
+    /// Moment about the centre of mass \[N m s\] · substep.
     moment: Vec3,
-    /// Σ of each one's impulse times the body's way against it there.
+    /// Sum of the products of each impulse and the body's displacement against it there.
     work: f32,
 }
 
 impl Pull {
-    /// An impulse at an arm from the centre of mass, and its work.
+    /// Adds an impulse at an arm from the centre of mass, and its work.
     pub fn add(&mut self, arm: Vec3, impulse: Vec3, work: f32) {
         self.impulse += impulse;
         self.moment += arm.cross(impulse);
@@ -221,19 +221,19 @@ impl Pull {
 }
 
 impl Struck<'_> {
-    /// The part of a pull that stops the body in the direction it pulls: more would throw it back.
+    /// Part of a pull that stops the body in the direction of the pull: more would throw it back.
     pub fn stopped_by(&self, pull: &Pull) -> f32 {
-        let way = pull.impulse.dot(self.body.inv_mass * pull.impulse)
+        let own_work = pull.impulse.dot(self.body.inv_mass * pull.impulse)
             + pull.moment.dot(self.body.inv_inertia * pull.moment);
-        if way > 0.0 {
-            (pull.work / way).clamp(0.0, 1.0)
+        if own_work > 0.0 {
+            (pull.work / own_work).clamp(0.0, 1.0)
         } else {
             1.0
         }
     }
 
-    /// Where the collider is in the cloth's frame at the start and at the end of the substep, as far as it is known.
-    pub fn way(&self, frame: &Frame) -> [Isometry3d; 2] {
+    /// Poses of the collider in the cloth's frame at the start and at the end of the substep, as far as they are known.
+    pub fn poses(&self, frame: &Frame) -> [Isometry3d; 2] {
         let [from, to] = self.given;
         let from = self.proxy.displaced(from, self.center_before, false);
         let to = self.proxy.displaced(to, self.center, true);
@@ -241,30 +241,30 @@ impl Struck<'_> {
         [from, to].map(|at| inverse * at)
     }
 
-    /// How it moves in the cloth's frame.
+    /// Motion of the collider in the cloth's frame.
     pub fn motion(&self, frame: &Frame) -> Motion {
-        Motion::new(self.way(frame), self.friction)
+        Motion::new(self.poses(frame), self.friction)
     }
 
-    /// Where a particle is from the body's centre of mass \[m\], given where it was in the world at the start of the substep.
+    /// Position of a particle relative to the body's centre of mass \[m\], from its position in the world at the start of the substep.
     ///
-    /// The arms at the start are those that keep angular momentum: a displacement Δ from x gives a particle x₀ × m Δ/h of it.
+    /// The arms at the start are the ones that keep angular momentum: a displacement Δ from x gives a particle x₀ × m Δ/h of it.
     pub fn arm(&self, before: Vec3) -> Vec3 {
         before - (self.center_before + self.proxy.start.0)
     }
 
-    /// W: 1/mass of the body along a direction [1/kg], at a particle that was at a place in the world.
+    /// W: 1/mass of the body along a direction [1/kg], at a particle's position in the world.
     pub fn inv_mass_at(&self, before: Vec3, along: Vec3) -> f32 {
         self.inv_mass(self.arm(before), along)
     }
 
-    /// Gives the body an impulse \[N s\] · substep at a particle that was at a place in the world.
+    /// Applies an impulse \[N s\] · substep to the body at a particle's position in the world.
     pub fn push(&mut self, before: Vec3, impulse: Vec3) {
         let arm = self.arm(before);
         self.proxy.push(self.body, arm, impulse, self.seconds, true);
     }
 
-    /// Moves the body as such an impulse does, without changing its velocity.
+    /// Displaces the body as such an impulse does, without changing its velocity.
     pub fn shift(&mut self, before: Vec3, impulse: Vec3) {
         let arm = self.arm(before);
         self.proxy.done.translation += self.body.inv_mass * impulse;
@@ -276,8 +276,8 @@ impl Struck<'_> {
         (along.dot(self.body.inv_mass * along) + lever.dot(self.body.inv_inertia * lever)).max(0.0)
     }
 
-    /// Lets particle `i` of inverse mass `w` strike the body: pushes both apart and, where `pressed` says by how much the two were
-    /// pressed together before \[N s\] · substep, rubs. Returns how hard it strikes, in the same unit.
+    /// Lets particle `i` of inverse mass `w` strike the body: pushes both apart and, if `pressed` is the earlier impulse between the two
+    /// \[N s\] · substep, applies friction. Returns the impulse, in the same unit.
     pub fn strike(
         &mut self,
         contact: Contact,
@@ -299,7 +299,7 @@ impl Struck<'_> {
         let mut from = previous.get(i);
         self.proxy.push(self.body, arm, normal * -impulse, h, true);
 
-        // How the particle moves against the surface.
+        // Sliding: motion of the particle against the surface.
         let [start, end] = self.given;
         let local = end.inverse() * place;
         let given = place - start * local;
@@ -307,7 +307,7 @@ impl Struck<'_> {
         let sliding = frame.vector_to_world(to - from) - given - velocity * h;
         let away = normal.dot(sliding);
         if impulse > 0.0 && away > 0.0 {
-            // What was inside does not fly off: that speed comes from the push alone.
+            // A particle that was inside does not fly off: that speed comes from the push alone.
             let back = away / both;
             from += contact.normal * (w * back);
             self.proxy.push(self.body, arm, normal * back, h, false);

@@ -1,4 +1,4 @@
-//! Which colliders are near a cloth, and which blocks of its particles are near a collider.
+//! Broad phase: colliders near a cloth, and blocks of its particles near a collider.
 
 use std::{hash::Hash, ops::Range};
 
@@ -17,13 +17,13 @@ use crate::{
     points::Points,
 };
 
-/// Particles of a block.
+/// Number of particles of a block.
 const BLOCK: usize = 128;
 
-/// How much room the list of colliders near a cloth leaves it to move \[m\].
+/// Distance that a cloth can move before the list of colliders near it is found again \[m\].
 const ROOM: f32 = 0.5;
 
-/// Room around a collider for contacts that have just ended \[m\].
+/// Margin around a collider for contacts that have just ended \[m\].
 pub const LEAVING: f32 = 0.01;
 
 fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
@@ -35,9 +35,9 @@ fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
 }
 
 impl ContactCache {
-    /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides their
-    /// own.
-    pub fn look(
+    /// Finds the boxes of the blocks, and the colliders near them, from which they keep a distance of `margin` \[m\] besides the colliders'
+    /// own margins.
+    pub fn find_colliders(
         &mut self,
         colliders: &Colliders,
         frame: &Frame,
@@ -72,7 +72,7 @@ impl ContactCache {
         self.holds = Some(holds);
         self.near.clear();
         for (k, collider) in colliders.colliders.iter().enumerate() {
-            // Cloth may have moved a body away from where it was to go.
+            // Cloth may have moved a body away from its path.
             let moved = if collider.body.is_some() { ROOM } else { 0.0 };
             let moved = Vec3::splat(moved + margin + LEAVING);
             let (min, max) = colliders.boxes[k];
@@ -88,7 +88,7 @@ impl ContactCache {
             .retain(|planes| near.iter().any(|k| planes.is_of(&colliders.colliders[*k])));
     }
 
-    /// The next particles from `start` on, in whole blocks, that a solid may touch that moves like this in the cloth's frame.
+    /// Next particles from `start` on, in whole blocks, that a solid with this motion in the cloth's frame may touch.
     pub fn next(
         &self,
         solid: &Solid,
@@ -121,14 +121,14 @@ impl ContactCache {
         Some(first * BLOCK..((first + count) * BLOCK).min(len))
     }
 
-    /// [`Self::update`] for single particles, in their order.
+    /// Applies [`Self::update`] to single particles, in their order.
     pub fn update_each(&mut self, level: Level, points: [&Points; 2], particles: &[usize]) {
         for block in particles.chunk_by(|a, b| a / BLOCK == b / BLOCK) {
             self.update(level, points, block[0]..block[0] + 1);
         }
     }
 
-    /// Finds the boxes of blocks again of which particles were moved, where there are other colliders that need them.
+    /// Updates the boxes of blocks whose particles were moved, if there are other colliders that need them.
     pub fn update(&mut self, level: Level, points: [&Points; 2], range: Range<usize>) {
         if self.near.len() < 2 {
             return;
@@ -144,8 +144,7 @@ impl ContactCache {
 }
 
 impl Colliders {
-    /// What tells the colliders apart that come within `room` \[m\] of a cloth's box during this step: who, which shape, from
-    /// where to where.
+    /// Identities of the colliders that come within `room` \[m\] of a cloth's box during this step: owner, shape, start and end.
     pub fn near(
         &self,
         frame: &Frame,
@@ -171,7 +170,7 @@ impl Colliders {
 }
 
 impl MovingCollider {
-    /// Whether it may come within `room` \[m\] of a cloth's box.
+    /// Returns whether it may come within `room` \[m\] of a cloth's box.
     fn reaches(&self, frame: &Frame, bounds: Bounds, room: f32) -> bool {
         let frame = frame.isometry().inverse();
         let [start, end] = [self.start, self.end].map(|at| frame * at);

@@ -1,4 +1,4 @@
-//! What a cloth knows of the colliders around it.
+//! The contact cache of a cloth.
 
 use bevy_math::Vec3;
 
@@ -7,10 +7,10 @@ use crate::{
     contact::colliders::ColliderId, kernels::patches::Patches, memory::heap, points::Points,
 };
 
-/// What a cloth knows of the colliders around it; scratch of a step.
+/// Colliders near a cloth, and its contacts with them; scratch of a step.
 #[derive(Clone, Debug, Default)]
 pub struct ContactCache {
-    /// Those that are near, as places in the list of colliders.
+    /// Indices of the colliders that are near.
     pub near: Vec<usize>,
     /// The box within which `near` is complete, as long as the cloth stays inside it, in the world \[m\].
     pub holds: Option<(Vec3, Vec3)>,
@@ -20,31 +20,31 @@ pub struct ContactCache {
     pub blocks: Vec<(Vec3, Vec3)>,
     /// The bodies as this cloth has moved them.
     pub bodies: Bodies,
-    /// The particles that carry parts of bodies: those of the state, while colliders are looked at.
+    /// Particles that carry parts of bodies: those of the state, while contacts are searched.
     pub couplings: Vec<Coupling>,
-    /// What particles see of meshes: those of the state, while colliders are looked at.
+    /// Contact planes of meshes: those of the state, while contacts are searched.
     pub planes: Vec<MeshPlanes>,
     /// Particles that touch something.
     pub found: Vec<usize>,
-    /// Colliders that go through the cloth: those of the state, while colliders are looked at.
+    /// Colliders that pass through the cloth: those of the state, while contacts are searched.
     pub passing: Vec<ColliderId>,
 }
 
 impl ContactCache {
-    /// Forgets what held in the step before.
+    /// Drops the results of the step before.
     pub fn begin_step(&mut self) {
         self.holds = None;
         self.stage = None;
         self.bodies.clear();
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Memory on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.near) + heap(&self.blocks) + heap(&self.found) + heap(&self.couplings)
     }
 }
 
-/// What the particles of a cloth see of a mesh.
+/// Contact planes of the particles of a cloth with a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct MeshPlanes {
     pub collider: Option<(ColliderId, u64)>,
@@ -54,7 +54,7 @@ pub struct MeshPlanes {
 }
 
 impl MeshPlanes {
-    /// What it takes on the heap \[byte\].
+    /// Memory on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
         let Patches {
             normal,

@@ -4,26 +4,26 @@ use bevy_math::{Isometry3d, Mat3, Vec3};
 
 use super::solid::{Solid, swept};
 
-/// What tells a collider from others: whose it is, as bits, and which of those, with its part of a compound.
+/// Identity of a collider: its owner, as bits, and which of the owner's colliders it is, with its part of a compound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ColliderId {
-    /// Whose.
+    /// Owner, as bits.
     pub owner: u64,
-    /// Which of the owner's colliders, and which part of a compound.
+    /// Index among the owner's colliders, and part of a compound.
     pub part: (u32, u32),
 }
 
-/// Which colliders a cloth meets, and which cloths a collider: two meet where each one's memberships share a bit with the other's filters.
+/// Collision layers: a cloth and a collider meet where each one's memberships share a bit with the other's filters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layers {
-    /// The layers that it is in, a bit each.
+    /// Layers of its own, a bit each.
     pub memberships: u32,
-    /// The layers that it meets, a bit each.
+    /// Layers that it meets, a bit each.
     pub filters: u32,
 }
 
 impl Layers {
-    /// Whether the two meet.
+    /// Returns whether the two meet.
     pub const fn interacts_with(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }
@@ -36,25 +36,25 @@ pub struct Body {
     pub inv_mass: Vec3,
     /// Inverse of the inertia about the centre of mass, in world axes [1/(kg m²)]; 0 does not turn.
     pub inv_inertia: Mat3,
-    /// In the world, at the end of the step \[m\].
+    /// Centre of mass at the end of the step, in the world \[m\].
     pub center_of_mass: Vec3,
 }
 
 /// The colliders of a step with their motion.
 #[derive(Clone, Debug, Default)]
 pub struct Colliders {
-    /// In the order in which they are solved.
+    /// Colliders, in the order in which they are solved.
     pub colliders: Vec<MovingCollider>,
-    /// The boxes around them during the step, in the world \[m\].
+    /// Boxes around them during the step, in the world \[m\].
     pub boxes: Vec<(Vec3, Vec3)>,
-    /// The bodies that cloth pushes.
+    /// Bodies that cloth pushes.
     pub bodies: Vec<Body>,
 }
 
 /// A simple solid during a step.
 #[derive(Clone, Debug)]
 pub struct MovingCollider {
-    /// What tells it from others, from step to step.
+    /// Identity, the same from step to step.
     pub id: ColliderId,
     pub solid: Solid,
     pub friction: f32,
@@ -62,12 +62,12 @@ pub struct MovingCollider {
     pub layers: Layers,
     pub start: Isometry3d,
     pub end: Isometry3d,
-    /// Which of the bodies it belongs to.
+    /// Index of the body that it belongs to.
     pub body: Option<usize>,
 }
 
 impl MovingCollider {
-    /// Where it is at a part of the step, in the world.
+    /// Pose at a part of the step, in the world.
     pub fn at(&self, fraction: f32) -> Isometry3d {
         Isometry3d::new(
             self.start.translation.lerp(self.end.translation, fraction),
@@ -75,8 +75,8 @@ impl MovingCollider {
         )
     }
 
-    /// The box around it during the step, margin included, in the world \[m\].
-    pub fn around(&self) -> (Vec3, Vec3) {
+    /// Box around it during the step, margin included, in the world \[m\].
+    pub fn swept_box(&self) -> (Vec3, Vec3) {
         const EVERYWHERE: (Vec3, Vec3) = (Vec3::MIN, Vec3::MAX);
         let margin = Vec3::splat(self.margin);
         self.solid.range().map_or(EVERYWHERE, |range| {
@@ -86,7 +86,7 @@ impl MovingCollider {
     }
 }
 
-/// Two surfaces rub with the geometric mean of their frictions: if either is slippery, so is the pair.
+/// Friction of a pair of surfaces: the geometric mean, so that the pair is slippery if either is.
 pub fn combined_friction(a: f32, b: f32) -> f32 {
     (a * b).max(0.0).sqrt()
 }

@@ -1,4 +1,4 @@
-//! The stages of bodies that cloth pushes; [`bodies`](super::bodies) explains them.
+//! Stages of bodies that cloth pushes; [`bodies`](super::bodies) explains them.
 
 use std::{mem, ops::Range};
 
@@ -18,14 +18,14 @@ use crate::{
     substep::Substep,
 };
 
-/// The most of a particle's inverse mass that a coupling takes: the rest is lost in rounding.
+/// Largest part of a particle's inverse mass that a coupling takes: the rest would be lost in rounding.
 const MOST: f32 = 1.0 - 1e-5;
 
 impl Colliders {
-    /// Lets the particles of a cloth strike a body: those that touch it, and those that are coupled with it.
+    /// Lets the particles of a cloth strike a body: particles that touch it, and particles that are coupled with it.
     ///
-    /// Before the constraints are solved those become coupled that touch, and those stay so that are near; after that, those stay
-    /// coupled that were pressed on it.
+    /// Before the constraints are solved, particles that touch become coupled, and coupled particles that are near stay so. After the
+    /// solve, coupled particles stay so if they were pressed on the body.
     pub fn strike(
         &self,
         (collider, index): (&MovingCollider, usize),
@@ -50,10 +50,10 @@ impl Colliders {
         let mut found = mem::take(&mut cache.found);
         found.clear();
         found.extend(couplings[old.clone()].iter().map(|c| c.particle));
-        let (way, len) = (struck.way(frame), particles.len());
+        let (poses, len) = (struck.poses(frame), particles.len());
         let motion = struck.motion(frame);
         let mut start = 0;
-        while let Some(range) = cache.next(&collider.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&collider.solid, poses, margin, start, len) {
             start = range.end;
             collider.prepare(&motion, margin, particles, cache, substep, range.clone());
             collider.find_touching(&motion, margin, particles, cache, range, &mut found);
@@ -104,10 +104,10 @@ impl Colliders {
         cache.bodies.list[index] = proxy;
     }
 
-    /// Shares bodies out to the particles that are coupled with them, and tells the constraints.
+    /// Shares bodies out to the particles that are coupled with them, for the constraints.
     pub fn share_out(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
         let mut couplings = mem::take(&mut cache.couplings);
-        // What no longer comes near a collider touches it no more.
+        // A particle that no longer comes near a collider touches it no more.
         couplings.retain(|coupling| self.find(coupling, cache).is_some());
         let bodies = &mut cache.bodies.list;
         bodies.iter_mut().for_each(|proxy| proxy.coupled = 0);
@@ -145,7 +145,7 @@ impl Colliders {
                 let share = w / (w + count * struck.inv_mass_at(before, along));
                 let share = share.min(MOST);
                 coupling.mass = (share / (w * (1.0 - share))).max(f32::MIN_POSITIVE);
-                // Where it lies on something else as well, the constraints know of that alone.
+                // A particle that touches another collider as well has only that contact in the constraints.
                 if contacts.depth[i] == 0.0 {
                     coupling.share = share.sqrt();
                     contacts.normal.set(i, coupling.share * coupling.normal);
@@ -156,7 +156,7 @@ impl Colliders {
         cache.couplings = couplings;
     }
 
-    /// Gives bodies what constraints pushed the particles with that are coupled with them.
+    /// Gives to bodies the impulses of the constraints on particles that are coupled with them.
     pub fn hand_over(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
         let mut couplings = mem::take(&mut cache.couplings);
         let frame = &*cloth.frame;
@@ -184,7 +184,7 @@ impl Colliders {
                 continue;
             };
             let margin = collider.margin + cloth.coefficients.margin;
-            let [from, to] = struck.way(frame);
+            let [from, to] = struck.poses(frame);
             let motion = struck.motion(frame);
             let mut pulled = Pull::default();
             for coupling in &mut *group {
@@ -201,15 +201,15 @@ impl Colliders {
                 coupling.held = held * coupling.mass - pushed;
                 coupling.pressed += coupling.held;
                 let point = from.inverse() * path[0];
-                let way = to * point - path[0] - pins.unwrap_or(Vec3::ZERO);
+                let displacement = to * point - path[0] - pins.unwrap_or(Vec3::ZERO);
                 let along = frame.vector_to_world(coupling.normal);
                 pulled.add(
                     struck.arm(frame.to_world(path[0])),
                     along * -coupling.held,
-                    coupling.held * coupling.normal.dot(way),
+                    coupling.held * coupling.normal.dot(displacement),
                 );
             }
-            // What pins pull back of what was too far away before gets no velocity of that.
+            // The part by which pins pull back an earlier excess gives the body no velocity.
             let stopped = pins.map_or(1.0, |_| struck.stopped_by(&pulled));
             for coupling in group {
                 let before = frame.to_world(previous_position.get(coupling.particle));
@@ -223,14 +223,14 @@ impl Colliders {
         cache.couplings = couplings;
     }
 
-    /// The collider that a particle is coupled with, where it is near and belongs to that body.
+    /// Collider that a particle is coupled with, if it is near and belongs to that body.
     fn find(&self, coupling: &Coupling, cache: &ContactCache) -> Option<&MovingCollider> {
         let near = cache.near.iter().filter_map(|&k| self.colliders.get(k));
         near.into_iter()
             .find(|c| c.id == coupling.collider && c.body == Some(coupling.body))
     }
 
-    /// A body in a substep.
+    /// State of a body in a substep.
     fn struck<'a>(
         &'a self,
         (collider, index): (&MovingCollider, usize),
@@ -254,7 +254,7 @@ impl Colliders {
     }
 }
 
-/// The mean way of what is held during the substep \[m\]; none where nothing is.
+/// Mean displacement of the held particles during the substep \[m\]; `None` without any.
 fn motion_of_pins(inv_mass: &[f32], [from, to]: [&Points; 2]) -> Option<Vec3> {
     let (mut sum, mut count) = (Vec3::ZERO, 0);
     for (i, _) in inv_mass.iter().enumerate().filter(|(_, w)| **w == 0.0) {
@@ -264,7 +264,7 @@ fn motion_of_pins(inv_mass: &[f32], [from, to]: [&Points; 2]) -> Option<Vec3> {
     (count > 0).then(|| sum / count as f32)
 }
 
-/// The couplings of a collider, which lie side by side in the order of particles.
+/// Range of the couplings of a collider, which lie side by side in the order of particles.
 fn group(couplings: &[Coupling], collider: &MovingCollider) -> Range<usize> {
     let name = collider.id;
     let is_own = |coupling: &Coupling| coupling.collider == name;

@@ -1,4 +1,4 @@
-//! Colliders, and what particles do at them.
+//! Colliders, and their contacts with particles.
 
 pub mod bodies;
 pub mod broad_phase;
@@ -24,7 +24,7 @@ use crate::{
 };
 
 impl Colliders {
-    /// Pushes particles out of colliders before the constraints are solved, and notes what they touch.
+    /// Pushes particles out of colliders before the constraints are solved, and notes contacts.
     pub fn approach(&self, substep: &Substep, cloth: &mut Cloth) {
         let particles = &mut *cloth.particles;
         let bodies = &mut particles.scratch.cache.bodies;
@@ -54,8 +54,8 @@ impl Colliders {
         self.collide(Phase::Final, Some(&Kind::ALL), substep, cloth);
     }
 
-    /// Keeps the particles of one cloth out of colliders: with `kinds` out of those, kind by kind, as the systems of an ECS do it; without out of
-    /// all, in the order of their list.
+    /// Keeps the particles of one cloth out of colliders: with `kinds` out of colliders of these kinds, kind by kind, as the systems of an
+    /// ECS do it; without out of all, in the order of their list.
     pub fn collide(
         &self,
         phase: Phase,
@@ -91,7 +91,7 @@ impl Colliders {
         let points = [position, previous_position];
         let stage = (substep.level, (substep.index, phase == Phase::Final));
         let margin = cloth.coefficients.margin;
-        cache.look(self, cloth.frame, layers, margin, stage, points);
+        cache.find_colliders(self, cloth.frame, layers, margin, stage, points);
         for pass in 0..kinds.map_or(1, <[Kind]>::len) {
             let kind = kinds.map(|kinds| kinds[pass]);
             for k in 0..cache.near.len() {

@@ -1,4 +1,4 @@
-//! Contacts of the particles of a cloth with one collider.
+//! Narrow phase: contacts of the particles of a cloth with one collider.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,7 +22,7 @@ use crate::{
         cylinder::Cylinder,
         half_space::{self, MovingHalfSpace},
         lanes::{Shared, SharedPoints},
-        patches::{Patches, Seen},
+        patches::{ContactPlanes, Patches},
         planes::Planes,
         solid::{self, Contact, Motion},
         sphere::{self, MovingSphere},
@@ -34,7 +34,7 @@ use crate::{
 
 /// Calls a body of code with the kernel's form of a solid.
 macro_rules! with_solid {
-    ($solid:expr, $margin:expr, $seen:expr, |$name:ident| $do:expr) => {{
+    ($solid:expr, $margin:expr, $planes:expr, |$name:ident| $do:expr) => {{
         let margin: f32 = $margin;
         match $solid {
             Solid::Sphere { radius } => {
@@ -87,8 +87,8 @@ macro_rules! with_solid {
                 $do
             }
             Solid::Mesh(_) => {
-                let patches: &Patches = $seen;
-                let $name = Seen { patches, margin };
+                let patches: &Patches = $planes;
+                let $name = ContactPlanes { patches, margin };
                 $do
             }
         }
@@ -130,7 +130,7 @@ fn touching<'a>(
     }
 }
 
-/// How something turns on a way: axis times angle \[rad\].
+/// Rotation from one pose to another: axis times angle \[rad\].
 fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     if from.rotation == to.rotation {
         Vec3::ZERO
@@ -139,11 +139,11 @@ fn turn([from, to]: [Isometry3d; 2]) -> Vec3 {
     }
 }
 
-/// What is faster than this goes through a cloth that it has drawn far out [m/s].
+/// Speed above which a collider goes through a cloth that it has drawn far out [m/s].
 const FAST: f32 = 2.0;
 
 impl MovingCollider {
-    /// Whether it goes through the cloth, at this speed [m/s].
+    /// Returns whether the collider goes through the cloth, at this speed [m/s].
     fn passes(&self, speed: f32, cache: &mut ContactCache) -> bool {
         let at = cache.passing.iter().position(|key| *key == self.id);
         if let Some(at) = at
@@ -155,7 +155,7 @@ impl MovingCollider {
         at.is_some()
     }
 
-    /// Keeps the particles of one cloth out.
+    /// Keeps the particles of one cloth out of the collider.
     pub fn collide(
         &self,
         phase: Phase,
@@ -164,16 +164,16 @@ impl MovingCollider {
         cache: &mut ContactCache,
     ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
-        let way = frame.way_to_frame(self.start, self.end, substep.fractions());
-        let far = way[0].translation.distance(way[1].translation);
+        let poses = frame.way_to_frame(self.start, self.end, substep.fractions());
+        let far = poses[0].translation.distance(poses[1].translation);
         if self.passes(far / substep.seconds, cache) {
             return;
         }
         let margin = self.margin + material.margin;
         let friction = combined_friction(self.friction, material.friction);
-        let motion = Motion::new(way, friction);
-        let turn = turn(way);
-        // What motion constraints pull back into a collider did not go there by itself either.
+        let motion = Motion::new(poses, friction);
+        let turn = turn(poses);
+        // A particle that a motion constraint pulls into a collider did not go there by itself either.
         let overlaps = AtomicBool::new(false);
         let out = Out {
             most: if cloth.limits.is_some() {
@@ -186,7 +186,7 @@ impl MovingCollider {
         let particles = &mut *cloth.particles;
         let len = particles.len();
         let (mut start, mut touches) = (0, false);
-        while let Some(range) = cache.next(&self.solid, way, margin, start, len) {
+        while let Some(range) = cache.next(&self.solid, poses, margin, start, len) {
             start = range.end;
             self.prepare(&motion, margin, particles, cache, substep, range.clone());
             let any = self.collide_range(
@@ -204,7 +204,7 @@ impl MovingCollider {
                 touches = true;
                 if phase == Phase::Approach {
                     particles.scratch.contacts.any = true;
-                    // What turns sweeps along as it does a metre from its axis.
+                    // A rotation sweeps along as it does a metre from its axis.
                     let touch = &mut particles.state.touch;
                     touch.swept = touch.swept.max(far + turn.length());
                 }
@@ -222,14 +222,14 @@ impl MovingCollider {
         }
     }
 
-    /// Keeps the particles of a range out.
+    /// Keeps the particles of a range out of the collider.
     fn collide_range(
         &self,
         phase: Phase,
         substep: &Substep,
         (motion, rotation, margin): (&Motion, Vec3, f32),
         particles: Touching,
-        seen: &Patches,
+        planes: &Patches,
         range: std::ops::Range<usize>,
     ) -> bool {
         let (level, workers) = (substep.level, substep.workers);
@@ -263,13 +263,13 @@ impl MovingCollider {
                     half_space::collide_all(level, &plane, particles, range)
                 })
             }
-            other => with_solid!(other, margin, seen, |solid| workers.any(range, |range| {
+            other => with_solid!(other, margin, planes, |solid| workers.any(range, |range| {
                 solid::collide_all(level, &solid, motion, particles, range)
             })),
         }
     }
 
-    /// Lists which particles of a range touch it.
+    /// Adds the particles of a range that touch the collider to `found`.
     pub fn find_touching(
         &self,
         motion: &Motion,
@@ -284,13 +284,13 @@ impl MovingCollider {
             overlaps: &AtomicBool::new(false),
         };
         let touching = touching(particles, Phase::Final, false, out);
-        let seen = cache.seen(self);
-        with_solid!(&self.solid, margin, seen, |solid| {
+        let planes = cache.seen(self);
+        with_solid!(&self.solid, margin, planes, |solid| {
             solid::find(&solid, motion, touching, range, |i| found.push(i));
         });
     }
 
-    /// Where the path of particle `i` ends with respect to the surface.
+    /// Contact at the end of the path of particle `i`.
     pub fn nearest(
         &self,
         motion: &Motion,
@@ -299,13 +299,13 @@ impl MovingCollider {
         i: usize,
         path: [Vec3; 2],
     ) -> Contact {
-        let seen = cache.seen(self);
-        with_solid!(&self.solid, margin, seen, |solid| {
+        let planes = cache.seen(self);
+        with_solid!(&self.solid, margin, planes, |solid| {
             solid::nearest(&solid, motion, i, path)
         })
     }
 
-    /// Keeps the particle out that is held by a hand.
+    /// Keeps the particle in a hand out of the collider.
     fn collide_held(
         &self,
         i: usize,

@@ -1,4 +1,4 @@
-//! What the particles of a cloth see of triangle meshes.
+//! Contact planes of triangle meshes.
 
 use super::{cache::ContactCache, solid::Solid, surface::Surface};
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
 static NOTHING: std::sync::LazyLock<Patches> = std::sync::LazyLock::new(Patches::default);
 
 impl ContactCache {
-    /// What the particles see of this collider.
+    /// Contact planes with this collider.
     pub fn seen(&self, collider: &MovingCollider) -> &Patches {
         let id = collider.surface_id();
         let planes = self.planes.iter().find(|planes| planes.collider == id);
@@ -26,14 +26,14 @@ impl ContactCache {
 }
 
 impl MeshPlanes {
-    /// Whether it is of this collider.
+    /// Returns whether the planes are those of this collider.
     pub fn is_of(&self, collider: &MovingCollider) -> bool {
         self.collider.is_some() && self.collider == collider.surface_id()
     }
 }
 
 impl MovingCollider {
-    /// What tells a mesh, at its scale, from others.
+    /// Identity of a mesh at its scale.
     pub fn surface_id(&self) -> Option<(ColliderId, u64)> {
         let Solid::Mesh(_) = self.solid else {
             return None;
@@ -41,7 +41,7 @@ impl MovingCollider {
         Some((self.id, self.solid.bits()[1]))
     }
 
-    /// Sees to it that the planes that particles see of a mesh are right.
+    /// Updates the contact planes of particles that left the range of theirs.
     pub fn prepare(
         &self,
         motion: &Motion,
@@ -84,7 +84,7 @@ impl MovingCollider {
     }
 }
 
-/// Looks for the plane that a particle sees of a mesh.
+/// Finds the contact plane of a particle with a mesh.
 pub fn look(
     surface: &Surface,
     patches: &mut Patches,

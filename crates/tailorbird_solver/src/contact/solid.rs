@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt, sync::Arc};
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3, Vec4};
 
 use super::surface::Surface;
-use crate::kernels::planes::PlaneList;
+use crate::{fingerprint, kernels::planes::PlaneList};
 
 /// A shape at the scale of its entity.
 #[derive(Clone)]
@@ -26,7 +26,7 @@ impl fmt::Debug for Solid {
     }
 }
 
-/// What kind of solid it is: one kind is solved after the other.
+/// Kind of a solid: one kind is solved after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Sphere,
@@ -37,7 +37,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All, in the order in which they are solved.
+    /// All kinds, in the order in which they are solved.
     pub const ALL: [Self; 5] = [
         Self::Sphere,
         Self::HalfSpace,
@@ -48,36 +48,57 @@ impl Kind {
 }
 
 /// Heights above the x-z plane in a grid around the origin, columns along +x, rows along +z.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Field {
+    /// Equal for equal fields.
+    pub fingerprint: u64,
     /// Row by row \[m\].
     pub heights: Arc<[f32]>,
     /// Columns and rows.
     pub resolution: UVec2,
-    /// Between the first and the last of them \[m\].
+    /// Distance between the first and the last row and column \[m\].
     pub size: Vec2,
-    /// The lowest and the highest \[m\].
+    /// Lowest and highest value \[m\].
     pub range: (f32, f32),
+}
+
+impl Field {
+    /// The field of these heights \[m\].
+    pub fn new(heights: Arc<[f32]>, resolution: UVec2, size: Vec2) -> Self {
+        let measures = size.to_array().map(f32::to_bits);
+        let numbers = resolution.to_array().into_iter().chain(measures);
+        Self {
+            fingerprint: fingerprint::of(numbers.chain(heights.iter().map(|h| h.to_bits()))),
+            range: heights.iter().fold((f32::MAX, f32::MIN), |(low, high), h| {
+                (low.min(*h), high.max(*h))
+            }),
+            heights,
+            resolution,
+            size,
+        }
+    }
 }
 
 /// A convex hull at the scale of its entity.
 #[derive(Debug)]
 pub struct Hull {
+    /// Equal for equal hulls at equal scales.
+    fingerprint: u64,
     pub planes: PlaneList,
     pub size: f32,
     range: (Vec3, Vec3),
 }
 
 impl Hull {
-    /// An edge or corner where planes at a distance of 1 meet further away than this from it gets a plane of its own.
+    /// Distance from an edge or corner to the point where planes at a distance of 1 meet, above which it gets a plane of its own.
     const SHARP: f32 = 2.0;
 
-    /// The hull of these corners and triangles, counter-clockwise seen from outside, at a scale; none where nothing is left of it.
+    /// Hull of these corners and triangles, counter-clockwise seen from outside, at a scale; `None` where nothing is left of it.
     pub fn new(corners: &[Vec3], triangles: &[[u32; 3]], scale: Vec3) -> Option<Self> {
         let points: Vec<Vec3> = corners.iter().map(|p| *p * scale).collect();
         let center = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
         let mut planes: Vec<Vec4> = Vec::new();
-        // For each corner and each edge the normals of the faces there.
+        // Normals of the faces at each corner and each edge.
         let mut around = BTreeMap::<[u32; 2], Vec<Vec3>>::new();
         for &[a, b, c] in triangles {
             let [p, q, r] = [a, b, c].map(|k| points[k as usize]);
@@ -102,7 +123,7 @@ impl Hull {
                 add(&mut planes, middle, points[i as usize]);
             }
         }
-        // Rounding must leave no corner outside.
+        // No corner must be outside by rounding.
         for plane in &mut planes {
             let heights = points.iter().map(|p| plane.truncate().dot(*p));
             plane.w = heights.fold(f32::MIN, f32::max);
@@ -114,6 +135,7 @@ impl Hull {
         let low = points.iter().copied().reduce(Vec3::min)?;
         let high = points.iter().copied().reduce(Vec3::max)?;
         (planes.len() > 3 && size > 0.0).then(|| Self {
+            fingerprint: fingerprint::of_triangles(&points, triangles),
             planes: PlaneList::new(&planes),
             size,
             range: (low, high),
@@ -143,7 +165,7 @@ impl Solid {
         }
     }
 
-    /// The box around it in its own axes; `None` where it has no end.
+    /// Box around it in its own axes; `None` for one without end.
     pub fn range(&self) -> Option<(Vec3, Vec3)> {
         let around = |half: Vec3| (-half, half);
         Some(match self {
@@ -172,7 +194,7 @@ impl Solid {
         })
     }
 
-    /// What tells it from others, as bits.
+    /// Bits that identify the solid.
     pub fn bits(&self) -> [u64; 3] {
         let two = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         match self {
@@ -186,21 +208,21 @@ impl Solid {
                 radius,
                 half_height,
             } => [5, two(*radius, *half_height), 0],
-            Self::Hull(hull) => [6, Arc::as_ptr(hull) as u64, 0],
-            Self::Mesh(surface) => [7, Arc::as_ptr(surface) as u64, 0],
+            Self::Hull(hull) => [6, hull.fingerprint, 0],
+            Self::Mesh(surface) => [7, surface.fingerprint, 0],
             Self::Terrain { field, scale } => [
                 8,
-                Arc::as_ptr(&field.heights) as *const f32 as u64,
+                field.fingerprint ^ two(scale.y, 0.0),
                 two(scale.x, scale.z),
             ],
         }
     }
 }
 
-/// How far below its surface terrain is looked for \[m\].
+/// Depth below its surface down to which terrain is searched \[m\].
 const DEEP: f32 = 1e4;
 
-/// The box around a box that moves from one place to another, on the way as well.
+/// Box around a box that moves from one pose to another, including the poses between.
 pub fn swept((low, high): (Vec3, Vec3), start: &Isometry3d, end: &Isometry3d) -> (Vec3, Vec3) {
     let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
     let [a, b] = [start, end].map(|at| {
@@ -209,7 +231,7 @@ pub fn swept((low, high): (Vec3, Vec3), start: &Isometry3d, end: &Isometry3d) ->
         let half = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
         (middle - half, middle + half)
     });
-    // On the way it turns: a point at the distance r from the axis leaves the chord by r (1 − cos(angle/2)) at most.
+    // Between the poses it turns: a point at the distance r from the axis leaves the chord by r (1 − cos(angle/2)) at most.
     let half_turn = start.rotation.dot(end.rotation).abs().min(1.0);
     let bulge = Vec3::splat((1.0 - half_turn) * (center.length() + half.length()));
     (a.0.min(b.0) - bulge, a.1.max(b.1) + bulge)

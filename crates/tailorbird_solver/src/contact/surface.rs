@@ -9,24 +9,27 @@ use parry3d::{
     shape::{TriMesh as SearchMesh, TriMeshFlags},
 };
 
-use crate::kernels::patches::Patches;
+use crate::{fingerprint, kernels::patches::Patches};
 
 /// A triangle mesh at the scale of its entity.
 pub struct Surface {
+    /// Equal for equal triangles at equal scales.
+    pub fingerprint: u64,
     mesh: SearchMesh,
-    /// Whether it has an inside.
+    /// True if it has an inside.
     solid: bool,
-    /// A tenth of the usual length of an edge \[m\].
+    /// Tenth of the usual length of an edge \[m\].
     detail: f32,
 }
 
 impl Surface {
-    /// `None` where nothing is left of the triangles at this scale.
+    /// Returns `None` where nothing is left of the triangles at this scale.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], scale: Vec3) -> Option<Self> {
         let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale).collect();
         let mirrored = scale.x * scale.y * scale.z < 0.0;
         let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
-        let triangles = triangles.iter().copied().map(turn).collect();
+        let triangles: Vec<_> = triangles.iter().copied().map(turn).collect();
+        let fingerprint = fingerprint::of_triangles(&positions, &triangles);
         let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES
             | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
             | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
@@ -38,19 +41,20 @@ impl Surface {
         let lengths = mesh.triangles().map(|t| t.a.distance(t.b));
         let edge = lengths.sum::<f32>() / mesh.num_triangles().max(1) as f32;
         Some(Self {
+            fingerprint,
             solid,
             detail: 0.1 * edge,
             mesh,
         })
     }
 
-    /// Its box: lowest and highest coordinates \[m\].
+    /// Box around it: lowest and highest coordinates \[m\].
     pub fn range(&self) -> (Vec3, Vec3) {
         let Aabb { mins, maxs } = self.mesh.local_aabb();
         (mins, maxs)
     }
 
-    /// Looks for the plane that particle `i` sees, that went this way in the axes of the mesh and keeps `margin` \[m\].
+    /// Finds the contact plane of particle `i`, which took this path in the axes of the mesh and keeps `margin` \[m\].
     pub fn look(&self, patches: &mut Patches, i: usize, [from, to]: [Vec3; 2], margin: f32) {
         let slack = (0.5 * margin).max(self.detail);
         if let Some((point, normal)) = self.crossing(from, to) {
@@ -80,7 +84,7 @@ impl Surface {
             face
         };
         if !self.solid {
-            // It stays on the side where it was; at the first look, where it is.
+            // The particle stays on the side where it was; the first time, where it is.
             let seen = patches.holds[i] >= 0.0 && patches.height(i, from).abs() < reach;
             let before = patches.normal.get(i);
             if seen && distance < margin && normal.dot(before) < -0.5 {
@@ -91,7 +95,7 @@ impl Surface {
         patches.set(i, near.point, normal, to, clear.max(slack));
     }
 
-    /// Where a path enters the surface: the point, and the normal on the side where it comes from.
+    /// Point at which a path enters the surface, and the normal on the side from which it comes.
     fn crossing(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
         let ray = Ray::new(from, to - from);
         let hit = self.mesh.cast_local_ray_and_get_normal(&ray, 1.0, false)?;
@@ -102,8 +106,8 @@ impl Surface {
     }
 }
 
-/// Whether triangles make a closed surface that is seen from outside: each edge has a triangle on either side, and the volume
-/// is positive.
+/// Returns whether triangles form a closed surface that is seen from outside: each edge has a triangle on either side, and the volume is
+/// positive.
 fn is_solid(mesh: &SearchMesh) -> bool {
     let mut edges = BTreeSet::new();
     let corners = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];

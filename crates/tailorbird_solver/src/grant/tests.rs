@@ -19,14 +19,14 @@ fn mesh(seed: u64) -> Topology {
 }
 
 fn fabric(topology: &Topology) -> &Fabric {
-    topology.fabric.as_ref().expect("no grid")
+    topology.fabric().expect("no grid")
 }
 
 fn moved(topology: &Topology, to: impl Fn(Vec3) -> Vec3) -> Points {
     topology.rest_positions.iter().map(|p| to(*p)).collect()
 }
 
-/// How much longer than granted the edges are, at least and at most [-].
+/// Excess of the edges' lengths over their granted lengths, as a part of those at rest: least and greatest [-].
 fn beyond(grant: &Grant, fabric: &Fabric, position: &Points) -> [f32; 2] {
     let chains = fabric.chains();
     let lengths = grant.chains(chains);
@@ -42,7 +42,7 @@ fn beyond(grant: &Grant, fabric: &Fabric, position: &Points) -> [f32; 2] {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// Every edge of it then is about as long as it may be, however it lies.
+    /// Every edge then is about as long as granted, however it lies.
     #[test]
     fn what_is_stretched_evenly_is_granted_that(seed in 0_u64..100, u in 0.0_f32..0.3, v in 0.0_f32..0.3) {
         let topology = mesh(seed);
@@ -62,7 +62,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// The same for a sheet: of its rows, its columns and its diagonals.
+    /// The same for the rows, columns and diagonals of a sheet.
     #[test]
     fn what_a_sheet_is_stretched_by_it_is_granted(
         columns in 2_u32..20,
@@ -72,7 +72,7 @@ proptest! {
     ) {
         let cloth = ClothShape::grid(Vec2::new(1.0, 2.0), UVec2::new(columns, rows));
         let topology = Topology::build(&cloth, Vec3::ONE).expect("valid");
-        let lattice = topology.lattice.expect("a grid");
+        let lattice = *topology.lattice().expect("a grid");
         let position = moved(&topology, |p| p * Vec3::new(1.0 + v, 1.0 + u, 1.0));
         let mut grant = Grant::default();
         for _ in 0..60 {
@@ -144,7 +144,7 @@ fn what_is_granted_is_taken_back_at_its_rate() {
     );
 }
 
-/// Grants and takes back for so many steps what stretches by `strain` where so much is granted; tells the last [granted, strain].
+/// Runs a trial for so many steps on a cloth whose `strain` is a function of its grant; returns the last [granted, strain].
 fn tried(
     trial: &mut Trial,
     steps: usize,

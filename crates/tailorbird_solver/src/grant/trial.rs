@@ -1,47 +1,47 @@
-//! Whether what stretches a mesh is a demand or a load.
+//! Trial that tells a demand from a load.
 
 use super::LEAST;
 
-/// The part of what is granted that is taken back to see whether a load pulls [-].
+/// Part of the grant that is taken back to see whether a load pulls [-].
 const PROBE: f32 = 0.15;
 
-/// Where less than this part is left of what was granted, a load pulls [-].
+/// Part of the first grant below which a load pulls [-].
 const HARDLY: f32 = 0.25;
 
-/// A demand whose strain changes by more than this part is another [-].
+/// Relative change of its strain by which a demand becomes another [-].
 const CHANGED: f32 = 0.05;
 
-/// Whether what stretches the mesh is a demand, that is there whatever is granted, or a load, which stretches it the farther the more it
-/// is granted: a weight, a spring. That is found out by taking back a part of what was granted.
+/// Trial of the stretch of a mesh. A demand is there whatever is granted; a load (a weight, a spring) stretches the mesh the farther the
+/// more it is granted. The two are told apart by taking back a part of the grant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Trial {
-    /// What is asked for changes.
+    /// The demand changes.
     #[default]
     None,
-    /// Nothing more is granted, and what was is taken back.
+    /// Nothing more is granted, and the grant is taken back.
     TakesBack {
-        /// What was granted in the mean at first [-].
+        /// Mean grant at first [-].
         first: f32,
-        /// And after the last part was taken back.
+        /// Mean grant after the last part was taken back [-].
         granted: f32,
-        /// The mean strain then [-].
+        /// Mean strain at that time [-].
         strain: f32,
-        /// That of [`Self::Demand`].
+        /// `part` of [`Self::Demand`].
         part: f32,
     },
-    /// It is a demand.
+    /// A demand: more may be granted.
     Demand {
         /// The mean strain [-].
         strain: f32,
-        /// It is another one if that changes by more than this part of it [-].
+        /// Relative change of the strain by which the demand becomes another [-].
         part: f32,
     },
-    /// It is a load: nothing is granted.
+    /// A load: nothing is granted.
     Load,
 }
 
 impl Trial {
-    /// Whether more may be granted, where this is granted and so much is the strain in the mean [-].
+    /// Returns whether more may be granted, from the mean grant and the mean strain [-].
     pub fn grows(&mut self, stands: bool, [granted, strain]: [f32; 2]) -> bool {
         let takes_back = |first, part| Self::TakesBack {
             first,
@@ -56,7 +56,7 @@ impl Trial {
                 granted: before, ..
             } if granted > (1.0 - PROBE) * before => (*self, false),
             Self::TakesBack { first, .. } if granted < HARDLY * first => (Self::Load, false),
-            // It follows what is taken back.
+            // The strain follows the part that is taken back.
             Self::TakesBack {
                 first,
                 granted: g,
@@ -64,7 +64,7 @@ impl Trial {
                 part,
             } if e - strain > 0.5 * (g - granted) => (takes_back(first, part), false),
             Self::TakesBack { part, .. } => (Self::Demand { strain, part }, true),
-            // Not for ever.
+            // A demand is not kept for ever.
             Self::Demand { strain: e, part } if (strain - e).abs() > (part * e).max(LEAST) => {
                 (takes_back(granted, 2.0 * part), false)
             }

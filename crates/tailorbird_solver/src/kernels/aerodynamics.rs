@@ -25,7 +25,7 @@ mod sheet;
 
 pub use sheet::{AirSheet, classic_on_sheet, drag_and_lift_on_sheet};
 
-/// The air and the fabric in it.
+/// Air around a fabric, and the fabric's coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Air {
     /// Velocity of the air [m/s].
@@ -43,8 +43,8 @@ pub struct Air {
 }
 
 impl Air {
-    /// What `seconds` in the air do to the velocity `u` (relative to the air) of a plate with unit normal `n`: the
-    /// change of velocity [m/s]. Never makes it faster. `stretched` is its area as a multiple of that at rest.
+    /// Change of the velocity `u` (relative to the air) of a plate with unit normal `n` in `seconds` [m/s]. It never makes the plate
+    /// faster. `stretched` is the plate's area as a multiple of its area at rest.
     #[inline]
     pub fn velocity_change(&self, u: Vec3, n: Vec3, stretched: f32) -> Vec3 {
         let speed = u.length();
@@ -60,7 +60,7 @@ impl Air {
         if e >= 0.0 {
             turned / (1.0 + e) - u
         } else {
-            // More lift than drag: the part along û pushes forward, at most to the speed there was.
+            // With more lift than drag, the part along û pushes forward: at most to the speed before.
             (turned * (1.0 - e)).clamp_length_max(speed) - u
         }
     }
@@ -74,9 +74,9 @@ impl Air {
 
 /// Adds drag and lift to the accelerations [m/s²] of the particles.
 ///
-/// The velocity of a particle is `per_second` · (`position` − `previous`). A particle of mass 1/`inv_mass` \[kg\] gets the
-/// share of each triangle's mass (areal density times `rest_areas` \[m²\]) that is its own, a third; one that is held
-/// (`inv_mass` 0) gets nothing. A triangle without area does nothing.
+/// The velocity of a particle is `per_second` · (`position` − `previous`). Each corner has a third of a triangle's mass (areal density
+/// times `rest_areas` \[m²\]), and gets the triangle's change of velocity by the ratio of that third to its own mass 1/`inv_mass` \[kg\]; a
+/// held particle (`inv_mass` 0) gets nothing. A triangle without area does nothing.
 ///
 /// # Panics
 /// When a corner is not below the number of particles.

@@ -1,18 +1,18 @@
-//! Balls and half-spaces as solids: for bodies that cloth pushes. What stays or moves by itself has faster kernels
-//! (`sphere.rs`, `half_space.rs`).
+//! Balls and half-spaces as solids, for bodies that cloth pushes. For colliders that stay, or move by themselves, `sphere.rs` and
+//! `half_space.rs` are faster.
 
 use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// A ball around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// \[m\].
+    /// Radius \[m\].
     pub radius: f32,
 }
 
@@ -23,9 +23,9 @@ impl Solid for Ball {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, _simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let length = p.dot(p).sqrt();
-        Near {
+        Distances {
             distance: length - self.radius,
             out: p,
             length,
@@ -33,7 +33,7 @@ impl Solid for Ball {
     }
 }
 
-/// All below the height `margin` \[m\].
+/// Half-space of all points below the height `margin` \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     pub margin: f32,
@@ -46,8 +46,8 @@ impl Solid for Ground {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
-        Near {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
+        Distances {
             distance: p.y - self.margin,
             out: V3::splat(simd, Vec3::Y),
             length: S::f32s::splat(simd, 1.0),

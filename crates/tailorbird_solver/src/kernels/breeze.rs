@@ -8,27 +8,27 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::lanes::{Factor, SharedPoints, V3, each_window};
 use crate::{
     points::Points,
-    wind::{WAVES, Wave, WindShape},
+    wind::{WAVES, Wave, WindRegion},
 };
 
 /// A wind in a part of the world, with its eddies, in the axes of a cloth's frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Breeze {
-    /// Mean [m/s].
+    /// Mean velocity [m/s].
     pub velocity: Vec3,
     /// Its eddies, where it has any.
     pub waves: Option<[Wave; WAVES]>,
-    pub shape: WindShape,
-    /// \[m\]
+    pub shape: WindRegion,
+    /// Width of the border over which the wind rises \[m\].
     pub falloff: f32,
     /// From the frame's axes to those of the shape.
     pub to_own: Isometry3d,
 }
 
-/// Adds the way of the air in `seconds` to points `out`, for a range of particles.
+/// Adds the displacement of the air in `seconds` to the points `out` of a range of particles.
 ///
 /// # Panics
-/// When there are not as many points as particles, or not as many particles.
+/// When the number of points differs from that of particles, or the range is not within.
 pub fn add(
     level: Level,
     breeze: &Breeze,
@@ -70,9 +70,9 @@ fn add_to<S: Simd>(
                 let turns = V3::splat(simd, wave.turns).dot(p) + S::f32s::splat(simd, wave.phase);
                 velocity = velocity + Factor(sine(simd, turns)) * V3::splat(simd, wave.amplitude);
             }
-            let way = Factor(seconds * strength(simd, breeze, p)) * velocity;
+            let displacement = Factor(seconds * strength(simd, breeze, p)) * velocity;
             let before = out.load_at(simd, window, 0);
-            out.store_at(simd, window, 0, before + way);
+            out.store_at(simd, window, 0, before + displacement);
         },
     );
 }
@@ -89,18 +89,18 @@ fn sine<S: Simd>(simd: S, turns: S::f32s) -> S::f32s {
     s * (a + b * s.abs())
 }
 
-/// How strongly it blows at a place: 0 to 1.
+/// Strength of the wind at a place: 0 to 1.
 #[inline(always)]
 fn strength<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> S::f32s {
     let [zero, one] = [S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0)];
     let depth = match breeze.shape {
-        WindShape::Everywhere => return one,
-        WindShape::Cuboid { half_size } => {
+        WindRegion::Everywhere => return one,
+        WindRegion::Cuboid { half_size } => {
             let (q, half) = (own(simd, breeze, p), V3::<S>::splat(simd, half_size));
             let y = half.y - q.y.abs();
             (half.x - q.x.abs()).min(y).min(half.z - q.z.abs())
         }
-        WindShape::Sphere { radius } => {
+        WindRegion::Sphere { radius } => {
             let q = own(simd, breeze, p);
             S::f32s::splat(simd, radius) - q.dot(q).sqrt()
         }
@@ -114,7 +114,7 @@ fn strength<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> S::f32s {
     }
 }
 
-/// A place in the axes of the shape.
+/// Place in the axes of the shape.
 #[inline(always)]
 fn own<S: Simd>(simd: S, breeze: &Breeze, p: V3<S>) -> V3<S> {
     let rotation = Mat3::from_quat(breeze.to_own.rotation);
@@ -133,7 +133,7 @@ mod tests {
     use crate::{
         kernels::lanes::levels,
         topology::test_meshes::random,
-        wind::{self, Turbulence},
+        wind::{self, ClothTurbulence},
     };
 
     #[test]
@@ -151,15 +151,15 @@ mod tests {
         let point = |i| Vec3::new(random(i, 1), random(i, 2), random(i, 3)) * 4.0 - 2.0;
         let position: Points = (0..101).map(point).collect();
         let shapes = [
-            WindShape::Everywhere,
-            WindShape::Cuboid {
+            WindRegion::Everywhere,
+            WindRegion::Cuboid {
                 half_size: Vec3::new(1.0, 0.7, 1.5),
             },
-            WindShape::Sphere { radius: 1.2 },
+            WindRegion::Sphere { radius: 1.2 },
         ];
-        let turbulence = Turbulence {
+        let turbulence = ClothTurbulence {
             speed: 2.0,
-            ..Turbulence::default()
+            ..ClothTurbulence::default()
         };
         for shape in shapes {
             for falloff in [0.0, 0.4] {

@@ -4,34 +4,34 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
-/// The hull of two balls on the y axis.
+/// Convex hull of two balls on the y axis.
 ///
-/// A ball of the row at the height t has the radius r₀ − b t. The one that is nearest to a point at the distance ρ from the axis
-/// is where the direction to the point has the slope of the surface: t = y − ρ b/√(1 − b²), or the first or last one.
+/// The ball at the height t has the radius r₀ − b t. For a point at the distance ρ from the axis, the nearest ball is the one for which the
+/// direction to the point has the slope of the surface: t = y − ρ b/√(1 − b²), or the first or last ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     /// Height of the lower ball \[m\].
     bottom: f32,
-    /// From the lower ball's centre to the upper one's \[m\].
+    /// Distance from the lower ball's centre to the upper one's \[m\].
     length: f32,
-    /// Of the lower ball \[m\].
+    /// Radius of the lower ball \[m\].
     radius: f32,
-    /// By how much the radius shrinks along the axis [-].
+    /// Decrease of the radius along the axis, b [-].
     shrinks: f32,
     /// b/√(1 − b²) [-].
     slope: f32,
 }
 
 impl Capsule {
-    /// The hull of balls of these radii \[m\], `half_length` \[m\] below and above the origin, with all within `margin` of it.
+    /// Hull of two balls with these radii \[m\], `half_length` \[m\] below and above the origin, and all points within `margin` of it.
     pub fn new(bottom_radius: f32, top_radius: f32, half_length: f32, margin: f32) -> Self {
         let length = 2.0 * half_length;
         let difference = bottom_radius - top_radius;
         if difference.abs() >= length {
-            // One ball holds the other.
+            // One ball contains the other.
             let bottom = if difference > 0.0 {
                 -half_length
             } else {
@@ -65,7 +65,7 @@ impl Solid for Capsule {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let height = p.y - self.bottom;
         let mut ball = height;
@@ -79,7 +79,7 @@ impl Solid for Capsule {
         };
         let radius = S::f32s::splat(simd, self.radius) - ball * self.shrinks;
         let length = out.dot(out).sqrt();
-        Near {
+        Distances {
             distance: length - radius,
             out,
             length,

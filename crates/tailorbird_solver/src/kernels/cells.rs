@@ -1,7 +1,7 @@
 //! Sums over the triangles around each particle of a sheet, whose cells are cut as in `topology::grid`: cells side by side.
 //!
-//! Each row of particles gathers what the cells below and above it have for it. So a task writes its own rows alone, and tasks
-//! for different rows may run at the same time; each computes the row of cells above its first row once more.
+//! Each row of particles gathers the sums of the cells below and above it. So a task writes its own rows alone, and tasks for different
+//! rows may run at the same time; each computes the row of cells above its first row once more.
 
 use std::{mem::swap, ops::Range};
 
@@ -9,22 +9,22 @@ use fearless_simd::Simd;
 
 use super::lanes::{Shared, SharedPoints, V3, Window, each_window, with_scratch};
 
-/// What is summed.
+/// Quantity that is summed over triangles.
 pub trait AroundParticle<S: Simd>: Copy {
-    /// What has to be known of a corner.
+    /// Values that the sum needs of a corner.
     type Corner: Copy;
 
-    /// The corners that are the particles of a window, `offset` further on.
+    /// Loads the corners at the particles of a window, `offset` further on.
     fn corner(self, simd: S, window: Window, offset: usize) -> Self::Corner;
 
-    /// What a triangle has for each of its corners, which are counter-clockwise seen from the front.
+    /// Contribution of a triangle to each of its corners, which are counter-clockwise seen from the front.
     fn triangle(self, simd: S, corners: [Self::Corner; 3]) -> V3<S>;
 
     /// Takes the sum over the triangles around the particles of a window, `offset` further on.
     fn take(self, simd: S, window: Window, offset: usize, sum: V3<S>);
 }
 
-/// The numbers of scratch that a sheet of so many columns takes.
+/// Size of the scratch for a sheet of so many columns.
 fn scratch_of(columns: usize) -> usize {
     columns * 6 * 3
 }
@@ -34,17 +34,17 @@ pub fn with_cells<R>(columns: usize, f: impl FnOnce(&mut [f32]) -> R) -> R {
     with_scratch(scratch_of(columns), f)
 }
 
-/// What a row of cells has for the particles on one side of it.
+/// Contributions of a row of cells to the row of particles on one side of it.
 #[derive(Clone, Copy)]
 struct Side<'a> {
-    /// For particle i of the row what cell i has, 0 for the last one.
+    /// For particle i the contribution of cell i, 0 for the last particle.
     right: SharedPoints<'a>,
-    /// For particle i of the row what cell i − 1 has, 0 for the first one.
+    /// For particle i the contribution of cell i − 1, 0 for the first particle.
     left: SharedPoints<'a>,
 }
 
 impl<'a> Side<'a> {
-    /// Takes its numbers from scratch, and makes them 0.
+    /// Takes its arrays from scratch, filled with 0.
     #[inline(always)]
     fn take(scratch: &mut &'a mut [f32], columns: usize) -> Self {
         let mut points = || {
@@ -78,8 +78,8 @@ impl<'a> Side<'a> {
     }
 }
 
-/// Gathers for each of a range of rows of particles. The order in which a sum is made does not depend on the range, nor on how
-/// many cells lie side by side.
+/// Gathers the sums for a range of rows of particles. The order of summation depends neither on the range nor on the number of cells that
+/// lie side by side.
 #[inline(always)]
 pub fn gather<S: Simd, T: AroundParticle<S>>(
     simd: S,
@@ -113,7 +113,7 @@ pub fn gather<S: Simd, T: AroundParticle<S>>(
     }
 }
 
-/// What a row of cells has for the row of particles above it, for which it is below, and for the one under it.
+/// Adds a row of cells to two rows of sums: of the particles above the cells (which lie below these) and of the particles under them.
 #[inline(always)]
 fn cells<S: Simd, T: AroundParticle<S>>(
     simd: S,

@@ -1,8 +1,8 @@
-//! A particle against a surface: no penetration, Coulomb friction, no bounce.
+//! Contact of a particle with a surface: no penetration, Coulomb friction, no bounce.
 //!
-//! The chain solver looks for contacts twice in a substep. Before it solves, particles are pushed out and their contacts noted
-//! (normal and depth), without friction; the lines then move them along the surface alone. After it, what is left is
-//! pushed out, and friction acts with the depth of both times, as it is the whole push that presses the two together.
+//! The chain solver looks for contacts twice in a substep. Before the solve, particles are pushed out and their contacts noted (normal and
+//! depth), without friction; the lines then move these particles along the surface alone. After the solve, the remaining depth is pushed
+//! out, and friction acts with the depth of both times, because the whole push presses the two together.
 
 use std::{
     ops::Range,
@@ -15,12 +15,12 @@ use fearless_simd::{Simd, prelude::*};
 use super::lanes::{Factor, Shared, SharedPoints, V3, Window};
 use crate::{numbers::Numbers, points::Points};
 
-/// A particle's path through a substep, relative to the collider: `from` its start, `to` its end \[m\].
+/// Path of a particle through a substep, relative to the collider: from `from` to `to` \[m\].
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
-    /// At the start of the substep.
+    /// Position at the start of the substep.
     pub from: Vec3,
-    /// At the end of the substep.
+    /// Position at the end of the substep.
     pub to: Vec3,
 }
 
@@ -28,10 +28,10 @@ impl Path {
     /// Resolves a contact with a surface of unit `normal` that `to` lies `depth` \[m\] below.
     ///
     /// 1. `to` is pushed out along the normal.
-    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by `most` \[m\]
-    ///    at most: friction times what presses the two together.
-    /// 3. What is left of motion away from the surface comes from the push alone, so `from` follows: a particle that was
-    ///    inside does not pop out with a speed.
+    /// 2. The tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by `most` \[m\] at
+    ///    most: friction times the depth that presses the two together.
+    /// 3. Any motion away from the surface that is left comes from the push alone, so `from` follows: a particle that was inside does not
+    ///    pop out with a speed.
     #[inline]
     pub fn resolve(self, normal: Vec3, depth: f32, most: f32, surface: Vec3) -> Self {
         let mut to = self.to + normal * depth;
@@ -51,22 +51,21 @@ impl Path {
     }
 }
 
-/// The contacts of a cloth's particles, noted before its constraints are solved.
+/// Contacts of a cloth's particles, noted before its constraints are solved.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
     /// Unit normals, 0 without contact; shorter where a particle carries a part of a body.
     pub normal: Points,
-    /// How far a particle was pushed out \[m\].
+    /// Depth by which each particle was pushed out \[m\].
     pub depth: Numbers,
-    /// By how much the constraints push particles along their normals \[N s\] · substep; empty where no particle carries a part of a
-    /// body.
+    /// Impulse of the constraints on each particle along its normal \[N s\] · substep; empty where no particle carries a part of a body.
     pub pressed: Numbers,
-    /// Whether there are any.
+    /// True if there are any contacts.
     pub any: bool,
 }
 
 impl Contacts {
-    /// Forgets all contacts, and that there are any.
+    /// Forgets all contacts, and sets `any` to false.
     pub fn clear(&mut self) {
         for values in [
             &mut self.normal.x,
@@ -98,51 +97,51 @@ impl Contacts {
     }
 }
 
-/// What a cloth touched in a substep.
+/// Record of the contacts of a cloth in a substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
-    /// Whether it touched anything.
+    /// True if the cloth touched anything.
     pub any: bool,
-    /// Whether any particle was inside a collider that it did not enter by its own motion, in this step.
+    /// True if, in this step, any particle was inside a collider that it did not enter by its own motion.
     pub overlaps: bool,
-    /// How far what it touches has moved since the start of the substep \[m\].
+    /// Largest displacement, since the start of the substep, of a collider that it touches \[m\].
     pub swept: f32,
-    /// How many colliders it touches.
+    /// Number of colliders that it touches.
     pub colliders: usize,
 }
 
-/// When contacts are looked for.
+/// Time within the substep at which contacts are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Before the constraints are solved: push out and note, without friction.
+    /// Before the constraints are solved: particles are pushed out and contacts noted, without friction.
     Approach,
-    /// After that, with friction.
+    /// After the solve, with friction.
     Final,
 }
 
-/// The particles of a cloth against colliders.
+/// Particles of a cloth against colliders.
 #[derive(Clone, Copy)]
 pub struct Touching<'a> {
     pub position: SharedPoints<'a>,
     pub previous: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
-    /// Normals and depths; none where they are not noted.
+    /// Normals and depths; `None` where contacts are not noted.
     pub contacts: Option<(SharedPoints<'a>, Shared<'a>)>,
     pub phase: Phase,
-    /// What is done about what is inside.
+    /// Treatment of particles that are already inside.
     pub out: Out<'a>,
 }
 
-/// What is done about what is inside.
+/// Treatment of particles that were inside a collider at the start of the substep.
 #[derive(Clone, Copy)]
 pub struct Out<'a> {
-    /// How far what was inside already is pushed out \[m\].
+    /// Largest distance by which such a particle is pushed out \[m\].
     pub most: f32,
-    /// Becomes true where that counts.
+    /// Set to true where there is such a particle, and `most` bounds its push.
     pub overlaps: &'a AtomicBool,
 }
 
-/// What is known of the contacts of particles side by side.
+/// Noted contacts of particles side by side.
 #[derive(Clone, Copy)]
 pub struct Known<'a, S: Simd> {
     normal: V3<S>,
@@ -152,10 +151,10 @@ pub struct Known<'a, S: Simd> {
 }
 
 impl<'a> Touching<'a> {
-    /// Makes sure that there is one of each for all particles, and that a range lies within.
+    /// Checks that each array has one element for each particle, and that the range lies within.
     ///
     /// # Panics
-    /// Where they are not.
+    /// When one of these does not hold.
     pub fn check(&self, range: &Range<usize>) {
         let len = self.inv_mass.len();
         let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
@@ -187,7 +186,7 @@ impl<'a> Touching<'a> {
         }
     }
 
-    /// Stores the paths of those that touch, and notes contacts.
+    /// Stores the paths of touching particles, and notes contacts.
     #[inline(always)]
     pub fn store<S: Simd>(
         self,
@@ -214,8 +213,8 @@ impl<'a> Touching<'a> {
 }
 
 impl<S: Simd> Known<'_, S> {
-    /// Which particles (relative to the centre of a sphere) were in contact with it, and are no further above it than they
-    /// were below.
+    /// Mask of the particles (relative to the centre of a sphere) that were in contact with it and are no further above it than they were
+    /// below.
     #[inline(always)]
     pub fn stays(self, simd: S, to: V3<S>, radius: S::f32s) -> S::mask32s {
         let zero = S::f32s::splat(simd, 0.0);
@@ -224,13 +223,13 @@ impl<S: Simd> Known<'_, S> {
         self.depth.simd_gt(zero) & same & to.dot(to).simd_lt(reach * reach)
     }
 
-    /// Which particles were in contact with something, and are no further above a surface than they were below.
+    /// Mask of the particles that were in contact with something and are no further above a surface than they were below.
     #[inline(always)]
     pub fn within(self, simd: S, height: S::f32s) -> S::mask32s {
         self.depth.simd_gt(S::f32s::splat(simd, 0.0)) & height.simd_lt(self.depth)
     }
 
-    /// Which particles were in contact with a surface of this normal, and are no further above it than they were below.
+    /// Mask of the particles that were in contact with a surface of this normal and are no further above it than they were below.
     #[inline(always)]
     pub fn along(self, simd: S, normal: V3<S>, height: S::f32s) -> S::mask32s {
         let zero = S::f32s::splat(simd, 0.0);
@@ -238,8 +237,8 @@ impl<S: Simd> Known<'_, S> {
         self.depth.simd_gt(zero) & same & height.simd_lt(self.depth)
     }
 
-    /// How far particles are pushed out that are this deep inside at the end of their paths: all the way, but for those that were inside
-    /// at their start, deeper than this is far, which come out by as much as they went in and no more than is allowed beside that.
+    /// Distances by which particles are pushed out whose paths end this deep inside: the whole depth. A particle that was inside at its
+    /// start, deeper than this distance, comes out only by as much as it went in, plus the allowed distance.
     #[inline(always)]
     pub fn pushed(
         self,
@@ -265,12 +264,12 @@ impl<S: Simd> Known<'_, S> {
     /// Resolves contacts with surfaces of unit normals that the ends of the paths lie `depth` \[m\] below.
     ///
     /// 1. The end is pushed out along the normal.
-    /// 2. In the final phase, the tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back,
-    ///    by at most the coefficient of friction times the depth, with that which was noted added: the push is what presses the two together.
-    /// 3. What is left of motion away from the surface comes from the push alone, so the start follows: a particle that was
-    ///    inside does not pop out with a speed.
+    /// 2. In the final phase, the tangential displacement relative to the surface (which itself moves by `surface` \[m\]) is taken back, by
+    ///    at most the coefficient of friction times the depth plus the noted depth: the push presses the two together.
+    /// 3. Any motion away from the surface that is left comes from the push alone, so the start follows: a particle that was inside does
+    ///    not pop out with a speed.
     ///
-    /// Of those that do not touch, the result has no meaning.
+    /// For particles that do not touch, the result has no meaning.
     #[inline(always)]
     pub fn resolve(
         self,
@@ -302,7 +301,7 @@ impl<S: Simd> Known<'_, S> {
     }
 }
 
-/// The directions of vectors of these lengths; up where they have none.
+/// Unit vectors along vectors of these lengths; up where the length is 0.
 #[inline(always)]
 pub fn unit<S: Simd>(simd: S, v: V3<S>, length: S::f32s) -> V3<S> {
     let any = length.simd_gt(S::f32s::splat(simd, 1e-15));
@@ -310,11 +309,11 @@ pub fn unit<S: Simd>(simd: S, v: V3<S>, length: S::f32s) -> V3<S> {
     unit.select(any, V3::splat(simd, Vec3::Y))
 }
 
-/// By how much a squared length may differ from the one that is expected, as a part of it, for the series below.
+/// Largest relative deviation of a squared length from the expected one for which the series below is used.
 const ABOUT: f32 = 0.02;
 
-/// The directions of vectors, where `meant`; up where they have none. Those about as long as expected need no root and no quotient:
-/// for them 1/√(1 + e) is 1 − e/2 + 3e²/8 − 5e³/16 + 35e⁴/128, to within 10⁻⁹.
+/// Unit vectors along `v`, where `meant`; up where the length is 0. Vectors of about the expected length need no root and no quotient: for
+/// them 1/√(1 + e) is 1 − e/2 + 3e²/8 − 5e³/16 + 35e⁴/128, to within 10⁻⁹.
 #[inline(always)]
 pub fn unit_of_about<S: Simd>(simd: S, v: V3<S>, expected: f32, meant: S::mask32s) -> V3<S> {
     let square = v.dot(v);

@@ -5,16 +5,16 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
-/// A box around the origin: all within `half_size` of it along each axis \[m\].
+/// Box around the origin: all points within `half_size` of it along each axis \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     pub half_size: Vec3,
 }
 
-/// The distance from 0, and the direction away from it.
+/// Distance from 0, and the direction away from it.
 #[inline(always)]
 pub(super) fn away<S: Simd>(simd: S, x: S::f32s) -> (S::f32s, S::f32s) {
     let zero = S::f32s::splat(simd, 0.0);
@@ -30,9 +30,9 @@ impl Solid for Cuboid {
         self.half_size.min_element()
     }
 
-    /// The distance from the plane of the nearest face, which is less than that from an edge.
+    /// Distance from the plane of the nearest face, which is less than that from an edge.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let ((x, right), (y, up), (z, front)) = (away(simd, p.x), away(simd, p.y), away(simd, p.z));
         let x = x - self.half_size.x;
@@ -42,7 +42,7 @@ impl Solid for Cuboid {
         let on_y = y.simd_ge(distance);
         let on_x = x.simd_ge(distance) & !on_y;
         let on_z = !(on_x | on_y);
-        Near {
+        Distances {
             distance,
             out: V3 {
                 x: on_x.select(right, zero),

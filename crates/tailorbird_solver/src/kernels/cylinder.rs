@@ -5,15 +5,15 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     cuboid::away,
     lanes::{V3, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
-/// A cylinder along y around the origin.
+/// Cylinder along y around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// \[m\].
+    /// Radius \[m\].
     pub radius: f32,
-    /// \[m\].
+    /// Half its height \[m\].
     pub half_height: f32,
 }
 
@@ -23,16 +23,16 @@ impl Solid for Cylinder {
         self.radius.min(self.half_height)
     }
 
-    /// The distance from its side, or from the plane of its nearest end.
+    /// Distance from its side, or from the plane of its nearest end.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let zero = S::f32s::splat(simd, 0.0);
         let (y, up) = away(simd, p.y);
         let end = y - self.half_height;
         let from_axis = (p.x * p.x + p.z * p.z).sqrt();
         let side = from_axis - self.radius;
         let on_end = end.simd_ge(side);
-        Near {
+        Distances {
             distance: end.max(side),
             out: V3 {
                 x: on_end.select(zero, p.x),

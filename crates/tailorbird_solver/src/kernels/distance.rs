@@ -10,13 +10,13 @@
 
 use crate::points::Points;
 
-/// A distance below this \[m\] has no direction; the shorter, the less the constraint moves its ends.
+/// A distance below this \[m\] has no direction: such a constraint moves its ends less, in proportion to the distance.
 const SHORTEST: f32 = 1e-9;
 
-/// Inverse masses below this [1/kg] count as this, so that a constraint between two held ends divides by something.
+/// Smallest inverse mass [1/kg] in the denominator, so that a constraint between two held ends does not divide by 0.
 const HEAVIEST: f32 = 1e-20;
 
-/// Runs of at least so many constraints are solved side by side.
+/// Length from which on a run of constraints is solved side by side.
 const SHORTEST_RUN: usize = 8;
 
 /// One pass over rigid constraints (α = 0).
@@ -29,7 +29,7 @@ pub fn solve_rigid(
     inv_mass: &[f32],
     position: &mut Points,
 ) {
-    // Nothing is remembered: these take no space.
+    // Nothing is remembered: units take no space.
     let mut nothing = vec![(); ends.len()];
     let scale = |length: f32, rest: f32, w: f32, (): &mut ()| (length - rest) / (length * w);
     pass(ends, rest_lengths, inv_mass, &mut nothing, position, scale);
@@ -108,7 +108,7 @@ fn pass<M>(
     }
 }
 
-/// How many constraints from the first on join one run of neighbouring particles to another: grids have long ones.
+/// Number of constraints, from the first on, that join one run of neighbouring particles to another: grids have long runs.
 #[inline(always)]
 fn run_length(ends: &[[u32; 2]]) -> usize {
     let Some([a, b]) = ends.first() else { return 0 };
@@ -125,8 +125,8 @@ fn at_least(least: f32, value: f32) -> f32 {
     if value > least { value } else { least }
 }
 
-/// Does what [`pass`] does to each constraint, for a run, in a form that compilers turn into vector instructions: no
-/// branch, no index to look up, and arguments that cannot overlap.
+/// Applies [`pass`] to each constraint of a run, in a form that compilers turn into vector instructions: no branch, no index to look up,
+/// and arguments that cannot overlap.
 #[inline(never)]
 fn solve_run<M>(
     [x_a, x_b]: [&mut [f32]; 2],

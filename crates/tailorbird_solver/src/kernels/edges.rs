@@ -1,4 +1,4 @@
-//! What the edges of lines resist with.
+//! Stiffness of the edges of lines.
 
 use fearless_simd::{Simd, prelude::*};
 
@@ -11,14 +11,14 @@ pub struct LineStiffness {
     pub rest_length: f32,
     /// α̃ = α/h² [1/kg].
     pub stretch: f32,
-    /// α̃ of the triples [1/kg]; infinite is without bending.
+    /// α̃ of the triples [1/kg]; infinite means no bending resistance.
     pub bend: f32,
-    /// Mass of a particle within the sheet \[kg\]; none has less, apart from those at the border.
+    /// Mass of a particle within the sheet \[kg\], the least of all but those at the border.
     pub mass: f32,
 }
 
 impl LineStiffness {
-    /// The edges of the lines from `first` on, one in each lane, of `count` in all.
+    /// Edges of the lines from `first` on, one in each lane, of `count` in all.
     #[inline(always)]
     pub fn of_lines<S: Simd>(self, simd: S, first: usize, count: usize) -> (Edge<S>, Whole<S>) {
         let mut scale = [1.0; WIDEST];
@@ -43,16 +43,16 @@ impl LineStiffness {
     }
 }
 
-/// What holds all along a line, for each lane.
+/// Properties of a whole line, for each lane.
 #[derive(Clone, Copy)]
 pub struct Whole<S: Simd> {
     /// α̃ of the triples [1/kg].
     pub bend: S::f32s,
-    /// |μ| of an edge with κ = 4 w |μ| = 1 \[kg\], w being the largest inverse mass, of particles at the ends half.
+    /// Tension that an edge bears, for κ = 4 w |μ| = 1: |μ| \[kg\]. w is the largest inverse mass; particles at the ends count half.
     pub bears: S::f32s,
 }
 
-/// What an edge resists with, for each lane.
+/// Length and compliance of an edge, for each lane.
 #[derive(Clone, Copy)]
 pub struct Edge<S: Simd> {
     /// L² \[m²\].
@@ -61,9 +61,9 @@ pub struct Edge<S: Simd> {
     pub alpha: S::f32s,
 }
 
-/// What the edges of chains resist with.
+/// Lengths and compliances of the edges of chains.
 pub trait Edges<S: Simd>: Copy {
-    /// Those from the particles `k` to the next.
+    /// Edges between the particles `k` and `k` + 1.
     fn at(self, simd: S, k: usize) -> Edge<S>;
 }
 
@@ -75,16 +75,16 @@ impl<S: Simd> Edges<S> for Edge<S> {
     }
 }
 
-/// Edges that differ: those of a mesh.
+/// Edges that differ along a chain: those of a mesh.
 #[derive(Clone, Copy)]
 pub struct MeshLines<'a> {
     /// L \[m\], 0 where there is no edge.
     pub rest_length: &'a [f32],
-    /// By what `stretch` is multiplied [-].
+    /// Factor of `stretch` [-].
     pub scale: &'a [f32],
     /// α̃ of an edge whose scale is 1 [1/kg].
     pub stretch: f32,
-    /// From one edge of a chain to the next.
+    /// Step from one edge of a chain to the next.
     pub stride: usize,
 }
 
@@ -102,20 +102,20 @@ impl<S: Simd> Edges<S> for MeshLines<'_> {
     }
 }
 
-/// How long the edges of lines side by side are to be \[m\].
+/// Prescribed lengths of the edges of lines side by side \[m\].
 #[derive(Clone, Copy)]
 pub struct LineLengths<'a> {
     pub lengths: Shared<'a>,
-    /// Where that of the first edge of the first lane is.
+    /// Index of the length of the first edge of the first lane.
     pub at: usize,
-    /// From one edge of a line to the next.
+    /// Step from one edge of a line to the next.
     pub stride: usize,
 }
 
-/// Edges of a sheet that are not to be as long as at rest.
+/// Edges of a sheet whose prescribed lengths differ from those at rest.
 #[derive(Clone, Copy)]
 pub struct SheetLines<'a, S: Simd> {
-    /// At rest.
+    /// Edge at rest.
     pub edge: Edge<S>,
     pub lengths: LineLengths<'a>,
 }

@@ -8,32 +8,33 @@
 //! Since Σ Kᵢ = 0, momentum is kept; since Σ xᵢ × Kᵢ Δλ = D × Δλ and Δλ points along D, so is angular momentum.
 //!
 //! # The denominator
-//! With one pass per substep and multipliers that start at 0, XPBD divides by d = W + α̃, α̃ = α/h². That is right for a hinge
-//! alone; in a sheet it makes hinges too soft, all the more the finer the mesh. At rest a pass must move each particle back to
-//! where the substep began. What a hinge finds then is not what remains at the end of the pass, D*, but D* less what it and
-//! all hinges after it are going to do. Inside a sheet the bending moment varies slowly and moments of neighbours
-//! cancel: what all the others do to D is −W λ. Half of them come later, so that a hinge finds D* − W λ + ½ W λ and pushes
-//! by λ = −(D* − ½ W λ)/d, which is the −D*/α̃ of a spring of the given compliance where **d = α̃ + W/2**.
-//! (d = α̃ would be right if all saw D*, and is too stiff by as much as W + α̃ is too soft.)
 //!
-//! d is at least W, as what is below over-relaxes and gains energy. So a sheet settles at the deflection that its
-//! rigidity says as long as α̃ ≥ W/2, and is softer than asked where it is stiffer than one pass can make it: then more
-//! substeps are needed. Solve batches in the same order in each substep; turning it round makes stiff hinges swing.
+//! With one pass per substep and multipliers that start at 0, XPBD divides by d = W + α̃, α̃ = α/h². That is right for a single hinge; in a
+//! sheet it makes hinges too soft, all the more the finer the mesh. At rest a pass must move each particle back to the place where the
+//! substep began. So a hinge does not see the value of D at the end of the pass, D*, but D* less the changes by itself and by all hinges
+//! after it. Inside a sheet the bending moment varies slowly and moments of neighbours cancel: all other hinges together change D by −W λ.
+//! Half of them come later, so that a hinge sees D* − W λ + ½ W λ and pushes by λ = −(D* − ½ W λ)/d. That is the −D*/α̃ of a spring of the
+//! prescribed compliance if **d = α̃ + W/2**. (d = α̃ would be right if every hinge saw D*, and is too stiff by as much as W + α̃ is too
+//! soft.)
+//!
+//! d is at least W, because a smaller d over-relaxes and gains energy. So a sheet settles at the deflection that follows from its rigidity
+//! as long as α̃ ≥ W/2. A stiffer sheet is softer than prescribed, because one pass cannot make it stiffer: then more substeps are needed.
+//! Solve batches in the same order in each substep; reversing the order makes stiff hinges swing.
 
 use bevy_math::{Vec3, Vec4, Vec4Swizzles};
 
 use super::packed::{Packed, inv_mass, of_space};
 
-/// A D shorter than this part of its rest length has no direction.
+/// Ratio of D to its rest length below which D has no direction.
 const SHORTEST: f32 = 1e-6;
 
-/// Denominators below this [1/kg] count as this, so that a hinge of four held particles divides by something.
+/// Smallest denominator [1/kg], so that a hinge of four held particles does not divide by 0.
 const HEAVIEST: f32 = 1e-20;
 
 /// One pass over hinges that share no particle.
 #[derive(Clone, Copy, Debug)]
 pub struct HingePass {
-    /// 1/B, B the bending rigidity [1/(N m)]. 0 is rigid.
+    /// 1/B, B being the bending rigidity [1/(N m)]. 0 is rigid.
     pub bend_compliance: f32,
     /// Length of the substep, h \[s\].
     pub seconds: f32,
@@ -42,7 +43,7 @@ pub struct HingePass {
 /// A batch of hinges, as parallel slices.
 #[derive(Clone, Copy, Debug)]
 pub struct Hinges<'a> {
-    /// The particles of each.
+    /// The four particles of each hinge.
     pub particles: &'a [[u32; 4]],
     /// Kᵢ [-].
     pub coefficients: &'a [[f32; 4]],
@@ -59,7 +60,7 @@ impl HingePass {
         self.pass(hinges, all, |_, _, d| d);
     }
 
-    /// Bends hinges of any rest shape. `rest_lengths` \[m\] are those of D with the sign of D · (x₁ − x₀) × (x₃ − x₂) at
+    /// Bends hinges of any rest shape. `rest_lengths` \[m\] are the lengths of D at rest, with the sign of D · (x₁ − x₀) × (x₃ − x₂) at
     /// rest.
     ///
     /// # Panics
@@ -71,7 +72,7 @@ impl HingePass {
         });
     }
 
-    /// One pass; `constraint` says C of hinge k from its corners and D.
+    /// One pass; `constraint` computes C of hinge k from its corners and D.
     #[inline(always)]
     fn pass(
         &self,
@@ -108,13 +109,13 @@ impl HingePass {
     }
 }
 
-/// D. Differences first: it must not depend on how far from the origin the cloth is.
+/// Computes D. Differences come first: the result must not depend on the distance of the cloth from the origin.
 #[inline(always)]
 fn bending(k: [Vec4; 4], [x0, x1, x2, x3]: [Vec4; 4]) -> Vec4 {
     (x1 - x0) * k[1] + (x2 - x0) * k[2] + (x3 - x0) * k[3]
 }
 
-/// C of a hinge that is folded at rest. Without a direction of its own, D gets that of the normal.
+/// C of a hinge that is folded at rest. A D without a direction of its own gets that of the normal.
 #[inline(always)]
 fn away_from_rest([x0, x1, x2, x3]: [Vec3; 4], d: Vec3, rest_length: f32) -> Vec3 {
     let normal = (x1 - x0).cross(x3 - x2);

@@ -137,8 +137,8 @@ fn a_fold_is_restored_from_either_side_and_from_flat() {
     }
 }
 
-/// A strip of `columns` × 4 square cells, clamped at its first two columns; `flip` says how its cells are cut. Its inner
-/// particles are moved in the plane by up to `jitter` cells.
+/// A strip of `columns` × 4 square cells, clamped at its first two columns; `flip` says how its cells are cut. Its inner particles are
+/// moved in the plane by up to `jitter` cells.
 struct Strip {
     hinges: HingeConstraints,
     position: Points,
@@ -198,7 +198,7 @@ impl Strip {
         }
     }
 
-    /// How far the free end sinks, over what it does where energy and weight are in balance.
+    /// Deflection of the free end, over that at which energy and weight are in balance.
     fn sag(mut self, rigidity: f32, gravity: f32) -> f32 {
         let balance = self.balance() * gravity / rigidity;
         let pass = HingePass {
@@ -230,8 +230,8 @@ impl Strip {
             / (ROWS + 1) as f32
     }
 
-    /// How far the free end sinks where the derivative of energy and weight is 0, for B = 1 N m and 1 m/s²: conjugate
-    /// gradients in double precision.
+    /// Deflection of the free end at which the derivative of energy and weight is 0, for B = 1 N m and 1 m/s²: conjugate gradients in
+    /// double precision.
     fn balance(&self) -> f32 {
         let free = |i: usize| self.inv_mass[i] > 0.0;
         let n = self.inv_mass.len();

@@ -1,8 +1,8 @@
-//! Numbers side by side: what the vector kernels share.
+//! Numbers side by side: the common part of the vector kernels.
 //!
-//! A kernel is written once, for a vector of [`Simd::f32s`] whose width the instruction set decides. Each lane is a chain, a
-//! constraint or a particle of its own and takes the same IEEE operations in the same order whatever the width, so that
-//! every instruction set gives the same bits.
+//! A kernel is written once, for a vector of [`Simd::f32s`] whose width the instruction set decides. Each lane is a chain, a constraint or
+//! a particle of its own and takes the same IEEE operations in the same order whatever the width, so that every instruction set gives the
+//! same bits.
 
 #![expect(
     unsafe_code,
@@ -16,17 +16,16 @@ use fearless_simd::{Simd, f32x4, prelude::*};
 pub use super::vectors::{Factor, V3};
 use crate::points::Points;
 
-/// The widest vector of all instruction sets.
+/// Width of the widest vector of all instruction sets.
 pub const WIDEST: usize = 16;
 
-/// The lanes of a vector as an array of numbers.
+/// Lanes of a vector as an array of numbers.
 type Lanes<S> = <<S as Simd>::f32s as SimdBase<S>>::Array;
 
-/// An array that several tasks read and write, each its own elements.
+/// An array that several tasks read and write, each at its own elements.
 ///
-/// Indices are checked in builds with debug assertions, as those of the tests; the kernels check the size of the whole once
-/// ([`super::lattice::Sheet::check`]). Checking each of the 14 accesses of a vector of springs took as long as the
-/// springs themselves.
+/// Indices are checked in builds with debug assertions, such as those of the tests; the kernels check the size of the whole once
+/// ([`super::lattice::Sheet::check`]). Checking each of the 14 accesses of a vector of springs took as long as the springs themselves.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
     start: NonNull<f32>,
@@ -106,7 +105,7 @@ impl<'a> Shared<'a> {
         unsafe { self.start.add(i).write(value) }
     }
 
-    /// The elements of a window, `offset` further on. Lanes beyond a short window are 0.
+    /// Loads the elements of a window, `offset` further on. Lanes beyond a short window are 0.
     #[inline(always)]
     pub fn load_at<S: Simd>(self, simd: S, window: Window, offset: usize) -> S::f32s {
         let i = window.at + offset;
@@ -142,7 +141,7 @@ impl<'a> Shared<'a> {
 pub struct Reading<'a>(pub &'a [f32]);
 
 impl Reading<'_> {
-    /// The elements of a window. Lanes beyond a short window are 0.
+    /// Loads the elements of a window. Lanes beyond a short window are 0.
     #[inline(always)]
     pub fn load_at<S: Simd>(self, simd: S, window: Window) -> S::f32s {
         if window.short == 0 {
@@ -154,17 +153,17 @@ impl Reading<'_> {
     }
 }
 
-/// The elements that a vector stands for: as many as it has lanes, without gaps, in ranges of any length.
+/// Range of elements that a vector covers: as many as it has lanes, without gaps, in ranges of any length.
 ///
-/// The last window of a range lies at its end and so overlaps the one before; what that one does is left alone.
-/// Only a range that is shorter than a vector has a short window, which is loaded one by one.
+/// The last window of a range lies at its end and so overlaps the window before; elements of the overlap belong to the window before. Only
+/// a range that is shorter than a vector has a short window, whose elements are loaded one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// The first element.
     pub at: usize,
-    /// How many of the first lanes belong to the window before.
+    /// Number of the first lanes that belong to the window before.
     done: usize,
-    /// How many lanes there are, if not all.
+    /// Number of lanes of a short window; 0 for a full one.
     short: usize,
 }
 
@@ -179,7 +178,7 @@ impl Window {
         }
     }
 
-    /// One element.
+    /// Window of one element.
     #[inline(always)]
     pub fn single(at: usize) -> Self {
         Self {
@@ -189,7 +188,7 @@ impl Window {
         }
     }
 
-    /// The last elements of a range, of which `left` are still to be done: less than a vector.
+    /// The last window of a range, of whose elements `left` are still to be done: fewer than a vector has.
     #[inline(always)]
     fn last<S: Simd>(_simd: S, range: &Range<usize>, left: usize) -> Self {
         let lanes = S::f32s::LEN;
@@ -208,22 +207,22 @@ impl Window {
         }
     }
 
-    /// The lanes that belong to this window.
+    /// Mask of the lanes that belong to this window.
     #[inline(always)]
     pub fn todo<S: Simd>(self, simd: S) -> S::mask32s {
         lane_numbers(simd).simd_ge(S::f32s::splat(simd, self.done as f32))
     }
 }
 
-/// In bytes.
+/// Size of a cache line \[byte\].
 const CACHE_LINE: usize = 64;
 
 thread_local! {
     static SCRATCH: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Calls `f` with scratch of `len` numbers, which is kept for the next call on this thread. It starts where a cache line does: a
-/// vector that lies in two lines takes twice as long.
+/// Calls `f` with scratch of `len` numbers, which is kept for the next call on this thread. The scratch starts at a cache line, because
+/// loading a vector that lies in two lines takes twice as long.
 pub fn with_scratch<R>(len: usize, f: impl FnOnce(&mut [f32]) -> R) -> R {
     SCRATCH.with(|scratch| {
         let mut own = Vec::new();
@@ -237,8 +236,8 @@ pub fn with_scratch<R>(len: usize, f: impl FnOnce(&mut [f32]) -> R) -> R {
     })
 }
 
-/// Calls `f` for the windows of a range, for the last one first: what it stores and the one before it loads then has time to
-/// get to the cache.
+/// Calls `f` for the windows of a range, the last window first. That window overlaps its neighbour, and its stores have reached the cache
+/// when the neighbour loads the same elements.
 #[inline(always)]
 pub fn each_window<S: Simd>(simd: S, range: Range<usize>, mut f: impl FnMut(Window)) {
     let lanes = S::f32s::LEN;

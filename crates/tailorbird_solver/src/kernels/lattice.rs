@@ -2,6 +2,28 @@
 //!
 //! Columns lie side by side in memory and are solved where they are. Rows are transposed, a block of them at a time, into
 //! scratch that has the form of columns, solved by the same kernel, and transposed back.
+//!
+//! ```text
+//!            column 0     1     2     3     4        particle = row · columns + column
+//!
+//!     row 0         o─────o─────o─────o─────o        ─ edges of a row, │ edges of a column
+//!                   │ ╲ ╱ │ ╲ ╱ │ ╲ ╱ │ ╲ ╱ │
+//!                   │  ╳  │  ╳  │  ╳  │  ╳  │        ╲ ╱ both diagonals of a cell (`shear`)
+//!                   │ ╱ ╲ │ ╱ ╲ │ ╱ ╲ │ ╱ ╲ │
+//!     row 1         o─────o─────o─────o─────o
+//!                   │ ╲ ╱ │ ╲ ╱ │ ╲ ╱ │ ╲ ╱ │
+//!
+//!     n rows of the sheet                  block of scratch, n lanes
+//!
+//!     row 0    a0 a1 a2 a3 │ a4            link 0    a0 b0 c0 d0
+//!     row 1    b0 b1 b2 b3 │ b4            link 1    a1 b1 c1 d1        lane = row, link = column
+//!     row 2    c0 c1 c2 c3 │ c4     ⇄      link 2    a2 b2 c2 d2
+//!     row 3    d0 d1 d2 d3 │ d4            link 3    a3 b3 c3 d3
+//!              ╰─  tile  ─╯                link 4    a4 b4 c4 d4
+//! ```
+//!
+//! A square tile of n × n numbers is transposed in registers; the columns that remain on the right, fewer than n, are moved one by one
+//! (`tile`).
 
 use std::ops::Range;
 
@@ -23,41 +45,46 @@ pub struct Sheet<'a> {
     pub rows: usize,
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
-    /// Unit normals of contacts, 0 where there is none; empty where nothing is in contact.
+    /// Unit normals of contacts, 0 for particles without contact; `None` where nothing is in contact.
     pub normal: Option<SharedPoints<'a>>,
-    /// Where what pushes particles along their normals is added up.
+    /// Sums of the impulses on particles along their normals.
     pub pressed: Option<Shared<'a>>,
-    /// How far the fabric gives way.
+    /// Limits of compliance and tension.
     pub give: Give,
-    /// How long the edges are to be where that differs; not where bodies are carried.
+    /// Prescribed lengths of the edges where they differ from those at rest; `None` where the sheet carries bodies.
     pub lengths: Option<Lengths<'a>>,
 }
 
-/// How long the edges of a sheet are to be, each at its first particle \[m\].
+/// Prescribed lengths of the edges of a sheet, each at the edge's first particle \[m\].
 #[derive(Clone, Copy)]
 pub struct Lengths<'a> {
-    /// Those along rows: to the next particle.
+    /// Edges along rows: to the next particle.
     pub rows: Shared<'a>,
-    /// Those along columns: to the particle of the next row.
+    /// Edges along columns: to the particle of the next row.
     pub columns: Shared<'a>,
-    /// The diagonals of the cell between both.
+    /// Both diagonals of the cell.
     pub diagonals: Shared<'a>,
 }
 
 impl Sheet<'_> {
-    /// Makes sure that all of columns × rows particles are there.
+    /// Checks that there are columns × rows particles in each array.
     ///
     /// # Panics
-    /// Where they are not.
+    /// When there are not.
     #[inline(always)]
     pub fn check(&self) {
         let n = self.columns * self.rows;
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        // Particles that are split off the sheet follow those of its columns and rows.
+        let points = |p: SharedPoints| {
+            [p.x.len(), p.y.len(), p.z.len()]
+                .iter()
+                .all(|len| *len >= n)
+        };
         assert!(
             points(self.position)
-                && self.inv_mass.len() == n
+                && self.inv_mass.len() >= n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.lengths.is_none_or(|lengths| lengths.are_of(n)),
             "a sheet of {} x {} particles",
             self.columns,
@@ -73,12 +100,12 @@ impl Lengths<'_> {
     }
 }
 
-/// What is special about a sheet: nothing, that it carries bodies, that its edges are not as long as at rest.
+/// Kinds of a sheet: a plain one, one that carries bodies, one whose prescribed edge lengths differ from those at rest.
 const PLAIN: u8 = 0;
 const BODIES: u8 = 1;
 const GRANTED: u8 = 2;
 
-/// Calls a kernel with two instruction sets alone: sheets that are special are few, and each takes long to compile.
+/// Calls a kernel for two instruction sets only: special sheets are few, and each instruction set takes long to compile.
 macro_rules! for_few {
     ($level:expr, $simd:ident => $do:expr) => {{
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -311,7 +338,7 @@ pub(super) struct Block<'a> {
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
     pub normal: SharedPoints<'a>,
-    /// Of the lines of a sheet whose edges are not as long as at rest, which carries no bodies, those lengths.
+    /// Impulses along normals of a sheet that carries bodies; prescribed edge lengths of a sheet where these differ from those at rest.
     pub pressed: Shared<'a>,
     pub shared: SharedPoints<'a>,
 }

@@ -5,9 +5,9 @@
 //! 1. |x − c| ≥ R for c = t − n (b + R): x ← c + R (x − c)/|x − c|
 //! 2. |x − t| ≤ r: x ← t + r (x − t)/|x − t|
 //!
-//! A particle that was stopped does not come back with a speed of its own: the part of x − x⁻ − u that points away from what
-//! stopped it is taken out, where u is how far the target moves in the substep. So targets that appear on the other side
-//! of a particle, or jump, throw nothing.
+//! A stopped particle does not come back with a speed of its own: the part of x − x⁻ − u that points away from the ball that stopped it is
+//! taken out, where u is the displacement of the target in the substep. So targets that appear on the other side of a particle, or jump, do
+//! not throw it.
 
 use std::ops::Range;
 
@@ -21,9 +21,9 @@ use crate::points::Points;
 pub struct Limits<'a> {
     /// Targets at the start and at the end of the step \[m\].
     pub targets: [&'a Points; 2],
-    /// The parts of the step that have passed at the start and at the end of the substep, 0 to 1.
+    /// Parts of the step that have passed at the start and at the end of the substep, 0 to 1.
     pub fractions: (f32, f32),
-    /// Furthest from the target \[m\]; infinite is free.
+    /// Largest distance from the target \[m\]; infinite is free.
     pub max_distance: &'a [f32],
     pub backstop: Option<Backstop<'a>>,
 }
@@ -32,16 +32,16 @@ pub struct Limits<'a> {
 pub struct Backstop<'a> {
     /// Unit normals at the start and at the end of the step.
     pub normals: [&'a Points; 2],
-    /// From the target to the ball \[m\]; infinite is none.
+    /// Distance from the target to the ball \[m\]; infinite is none.
     pub distance: &'a [f32],
-    /// \[m\].
+    /// Radius of the ball \[m\].
     pub radius: &'a [f32],
 }
 
 /// Keeps the free particles (`inv_mass` > 0) of a range within their limits.
 ///
 /// # Panics
-/// Where there is not one of each for all particles.
+/// When an array does not have one element for each particle.
 pub fn hold(
     level: Level,
     limits: Limits,
@@ -83,7 +83,7 @@ fn hold_with<S: Simd>(
         |window| {
             let target = between(simd, limits.targets, window, to);
             let start: V3<S> = position.load_at(simd, window, 0);
-            let mut path = Path {
+            let mut path = Pushed {
                 place: start,
                 pushed: V3::splat(simd, bevy_math::Vec3::ZERO),
             };
@@ -95,7 +95,7 @@ fn hold_with<S: Simd>(
                 let center = target - Factor(distance + radius) * normal;
                 let d = start - center;
                 let q = d.dot(d);
-                // Not so where the distance is infinite.
+                // Never for an infinite distance.
                 let inside = q.simd_lt(radius * radius);
                 if inside.any_true() {
                     let out = q.simd_gt(zero);
@@ -127,14 +127,14 @@ fn hold_with<S: Simd>(
     );
 }
 
-/// Where particles are, and which way they were pushed last.
+/// Positions of particles, and the direction of the last push of each.
 #[derive(Clone, Copy)]
-struct Path<S: Simd> {
+struct Pushed<S: Simd> {
     place: V3<S>,
     pushed: V3<S>,
 }
 
-impl<S: Simd> Path<S> {
+impl<S: Simd> Pushed<S> {
     #[inline(always)]
     fn select(self, mask: S::mask32s, place: V3<S>, pushed: V3<S>) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl<S: Simd> Path<S> {
     }
 }
 
-/// A part of the way from one to the other, which ends exactly.
+/// Point between two ends, at a fraction of their distance; 0 and 1 give the ends exactly.
 #[inline(always)]
 fn between<S: Simd>(simd: S, ends: [&Points; 2], window: Window, fraction: f32) -> V3<S> {
     let [from, to] = ends.map(|points| points.window(simd, window, 0));
@@ -152,7 +152,7 @@ fn between<S: Simd>(simd: S, ends: [&Points; 2], window: Window, fraction: f32) 
     part(1.0 - fraction) * from + part(fraction) * to
 }
 
-/// Of unit length; 0 where there is no direction.
+/// Vectors scaled to unit length; 0 where there is no direction.
 #[inline(always)]
 fn unit<S: Simd>(simd: S, v: V3<S>) -> V3<S> {
     let q = v.dot(v);

@@ -16,7 +16,7 @@ struct One {
     free: bool,
 }
 
-/// Where it is after the whole step as one substep, and where it was before.
+/// Positions after the whole step as one substep, and before it.
 fn held(one: &One) -> [Vec3; 2] {
     let points = |p: Vec3| Points::from_iter([p]);
     let [from, to] = one.targets.map(points);
@@ -77,7 +77,7 @@ proptest! {
         prop_assert!(place.distance(center) >= radius - 1e-5);
     }
 
-    /// What is stopped has no more speed relative to its target than it had, and none away from what stopped it.
+    /// A stopped particle has no more speed relative to its target than it had, and none away from the ball that stopped it.
     #[test]
     fn what_is_stopped_is_not_thrown(one in one(), backstop in any::<bool>()) {
         let one = One {

@@ -1,4 +1,4 @@
-//! Where the particles of chains lie, and how far chains give way: what `line` and `ring` solve.
+//! Memory layout of chains, and limits of their compliance and tension: the input of `line` and `ring`.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -6,36 +6,35 @@ use fearless_simd::Simd;
 
 use super::lanes::{Factor, Shared, SharedPoints, V3};
 
-/// Inverse masses times square metres below this are none: what is held at both ends is divided by something.
+/// Smallest product of inverse mass and square metres in a denominator, so that an edge held at both ends does not divide by 0.
 pub(super) const NO_MASS: f32 = 1e-30;
 
-/// The least diagonal, as a part of (w_k + w_{k+1}) L²: two particles in contact one above the other cannot be moved along
-/// their edge.
+/// Least diagonal, as a part of (w_k + w_{k+1}) L²: two particles in contact one above the other cannot be moved along their edge.
 pub(super) const LEAST_PIVOT: f32 = 0.05;
 
-/// The least α̃_k L_k², as a part of (w_k + w_{k+1}) L²: the tension of what is taut and straight, such as a row between two
-/// pins, would have no bounds else, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet
-/// that hangs stretches half as much again.
+/// Least α̃_k L_k², as a part of (w_k + w_{k+1}) L². Without it, the tension of a taut and straight line, such as a row between two pins,
+/// would have no bounds, and waves across it outrun a substep. With 10⁻⁴ such rows tremble; with 10⁻³ a sheet that hangs stretches half as
+/// much again.
 pub const LEAST_COMPLIANCE: f32 = 5e-4;
 
-/// The largest κ = 4 w |μ| of a line whose inverse masses are w: what is above 4/3 lets waves of two edges' length grow.
+/// Largest κ = 4 w |μ| of a line whose inverse masses are w: above 4/3, waves of two edges' length grow.
 pub const LARGEST_KAPPA: f32 = 1.3;
 
-/// No particle is in contact.
+/// `CONTACT`: no particle is in contact.
 pub const FREE: u8 = 0;
-/// Some move along surfaces.
+/// `CONTACT`: some particles are in contact, and move along surfaces.
 pub const TOUCHING: u8 = 1;
-/// Some do, and carry parts of bodies: what pushes them is added up.
+/// `CONTACT`: some particles are in contact, and carry parts of bodies; the impulses along their normals are added up.
 pub const PRESSED: u8 = 2;
 
-/// How far chains give way.
+/// Limits of compliance and tension of chains that give way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Give {
-    /// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
+    /// Least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
     pub compliance: f32,
-    /// The most that an edge pulls with, κ = 4 w |μ| [-].
+    /// Largest pull of an edge, κ = 4 w |μ| [-].
     pub pull: f32,
-    /// And the most that it pushes with.
+    /// Largest push of an edge, κ = 4 w |μ| [-].
     pub push: f32,
 }
 
@@ -49,32 +48,31 @@ impl Default for Give {
     }
 }
 
-/// Where the chains lie.
+/// Arrays of chains side by side, and their layout.
 #[derive(Clone, Copy)]
 pub struct Lines<'a> {
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
-    /// Unit normals of contacts, 0 where there is none; read where some are in contact alone.
+    /// Unit normals of contacts, 0 for particles without contact; read only where some particles are in contact.
     pub normal: SharedPoints<'a>,
-    /// Where what pushes particles along their normals is added up; read and written with [`PRESSED`] alone.
+    /// Sums of the impulses on particles along their normals; read and written with [`PRESSED`] alone.
     pub pressed: Shared<'a>,
-    /// Where the particles are put between bending and stretching, side by side from the first on. May be `position` where that
-    /// lies like this as well.
+    /// Positions between bending and stretching, side by side from the first on. May be `position` if that has this layout too.
     pub bent: SharedPoints<'a>,
-    /// Scratch for what a substep does not stand, side by side.
+    /// Scratch for [`share`](super::share), side by side.
     pub shared: SharedPoints<'a>,
-    /// How far the chains give way.
+    /// Limits of compliance and tension.
     pub give: Give,
-    /// First particle of the first lane.
+    /// Index of the first particle of the first lane.
     pub offset: usize,
-    /// From one particle of a chain to the next.
+    /// Step from one particle of a chain to the next.
     pub stride: usize,
-    /// Particles of a chain.
+    /// Number of particles of a chain.
     pub len: usize,
 }
 
 impl Lines<'_> {
-    /// Where particle `k` of the first chain lies.
+    /// Index of particle `k` of the first chain.
     #[inline(always)]
     pub(super) fn at(self, k: usize) -> usize {
         self.offset + k * self.stride
@@ -96,7 +94,7 @@ impl Lines<'_> {
     }
 }
 
-/// Moves particles by what pushes them, along the surface alone where they are in contact.
+/// Moves particles by w (I − n nᵀ) times a push: along the surface alone where they are in contact.
 #[inline(always)]
 pub(super) fn apply<S: Simd, const CONTACT: u8>(
     simd: S,

@@ -1,8 +1,8 @@
 //! The constraints of a triangle mesh, in the form that the vector kernels want.
 //!
-//! Chains are gathered, one into each lane, into scratch that has the form of columns of a sheet, solved by the same kernel as
-//! those, and scattered back. A lane whose chain has ended goes on with copies of its last particle and edges of length 0,
-//! of which nothing comes. Springs are taken one after the other.
+//! Chains are gathered, one into each lane, into scratch that has the form of the columns of a sheet, solved by the kernel of those
+//! columns, and scattered back. A lane whose chain has ended goes on with copies of its last particle and edges of length 0, which have no
+//! effect. Springs are taken one after the other.
 
 use std::ops::Range;
 
@@ -27,47 +27,48 @@ use crate::{
     },
 };
 
-/// Denominators below this [1/kg] count as this.
+/// Smallest denominator [1/kg].
 const HEAVIEST: f32 = 1e-30;
 
-/// The particles of a mesh.
+/// Particles of a mesh.
 #[derive(Clone, Copy)]
 pub struct Mesh<'a> {
-    /// What joins them.
+    /// Constraints between the particles.
     pub fabric: &'a Fabric,
     pub position: SharedPoints<'a>,
     pub inv_mass: Shared<'a>,
-    /// Unit normals of contacts, 0 where there is none; empty where nothing is in contact.
+    /// Unit normals of contacts, 0 for particles without contact; `None` where nothing is in contact.
     pub normal: Option<SharedPoints<'a>>,
-    /// Where what pushes particles along their normals is added up.
+    /// Sums of the impulses on particles along their normals.
     pub pressed: Option<Shared<'a>>,
-    /// For each slot of the chains how long its edge is to be \[m\].
+    /// Prescribed length of the edge of each slot of the chains \[m\].
     pub rest_length: &'a [f32],
-    /// How far the fabric gives way.
+    /// Limits of compliance and tension.
     pub give: Give,
 }
 
 impl Mesh<'_> {
-    /// Makes sure that all particles of the fabric are there.
+    /// Checks that all particles of the fabric are there.
     ///
     /// # Panics
-    /// Where they are not.
+    /// When they are not.
     #[inline(always)]
     fn check(&self) {
         let n = self.fabric.particles();
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        // Particles that are split off follow those of the mesh.
+        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         assert!(
             points(self.position)
-                && self.inv_mass.len() == n
+                && self.inv_mass.len() >= n
                 && self.normal.is_none_or(points)
-                && self.pressed.is_none_or(|pressed| pressed.len() == n)
+                && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.rest_length.len() == self.fabric.chains().particle.len(),
             "a mesh of {n} particles"
         );
     }
 }
 
-/// Particles that belong to the lanes of a vector: any ones, or from a first one on.
+/// Particles in the lanes of a vector: any particles, or consecutive ones from a first on.
 #[derive(Clone, Copy)]
 struct Lanes<'a> {
     particles: &'a [u32],
@@ -75,7 +76,7 @@ struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    /// The particles of link `k` of the chains that start at the slot `start` and those after it.
+    /// Particles of link `k` of the chains that start at the slot `start` and at those after it.
     #[inline(always)]
     fn of_link<S: Simd>(fabric: &Fabric, slots: &'a [u32], start: usize, k: usize) -> Self {
         let at = start + k * LANES;
@@ -106,7 +107,7 @@ impl<'a> Lanes<'a> {
         }
     }
 
-    /// Stores all lanes but those of [`NONE`].
+    /// Stores all lanes but the lanes of [`NONE`].
     #[inline(always)]
     fn store<S: Simd>(self, to: Shared, value: S::f32s) {
         if self.run {
@@ -168,7 +169,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
         for k in 0..m {
             let lanes = Lanes::of_link::<S>(mesh.fabric, mesh.fabric.particle_or_last(), start, k);
             let w = lanes.load(simd, mesh.inv_mass);
-            // As in `line`: what is at an end counts half; that at the other is not known apart.
+            // As in `line`, a particle at an end counts half; only the end at the start of a chain is known here.
             lightest = lightest.max(if k == 0 { w * 0.5 } else { w });
             block
                 .position
@@ -222,7 +223,7 @@ fn solve_lines<S: Simd, const CONTACT: u8>(
     factors: Shared,
 ) {
     if let Some(closing) = closing {
-        // Apart: few meshes have any.
+        // A function of its own: few meshes have any rings.
         simd.vectorize(
             #[inline(always)]
             || ring::solve::<S, _, CONTACT>(simd, lines, edges, whole.bears, closing, factors),
@@ -257,9 +258,9 @@ pub fn solve_shear(springs: &Springs, rest_length: &[f32], alpha_tilde: f32, all
     }
 }
 
-/// Internal viscosity: neighbours exchange momentum in proportion to the difference of their velocities x − x⁻, after the
-/// rigid motion of the whole was subtracted; x⁻ moves. What rounding takes from that is added to `lost` \[m\], so
-/// that momentum is kept. `viscosity` is that times the time \[m²\], `areal_density` in kg/m².
+/// Internal viscosity: neighbours exchange momentum in proportion to the difference of their velocities x − x⁻, after the rigid motion of
+/// the whole was subtracted; x⁻ moves. The rounding error of x⁻ is added to `lost` \[m\], so that momentum is kept. `viscosity` is the
+/// viscosity times the time \[m²\], `areal_density` in kg/m².
 ///
 /// # Panics
 /// When there are not as many particles as the fabric has.
@@ -275,14 +276,14 @@ pub fn exchange(
 ) {
     let n = fabric.particles();
     assert!(
-        position.is_of(n) && previous.is_of(n) && lost.is_of(n) && inv_masses.len() == n,
+        position.has(n) && previous.has(n) && lost.has(n) && inv_masses.len() >= n,
         "a mesh of {n} particles"
     );
     with_scratch(8 * n, |scratch| {
-        // The velocity of each, and the momentum that it gets.
+        // Velocity of each particle, and the momentum that it gets.
         let moving = scratch.as_chunks_mut::<8>().0;
         for axis in 0..3 {
-            // The axes that follow.
+            // The two other axes, in cyclic order.
             let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
             let [x, y, z] = [axis, next, last].map(|k| [&position.x, &position.y, &position.z][k]);
             let before = [&previous.x, &previous.y, &previous.z][axis];

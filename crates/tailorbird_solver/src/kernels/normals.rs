@@ -7,11 +7,11 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     cells::{AroundParticle, gather, with_cells},
-    lanes::{Factor, Shared, SharedPoints, V3, Window},
+    lanes::{Factor, SharedPoints, V3, Window},
 };
 use crate::{points::Points, topology::lattice::Lattice};
 
-/// Unit normals of the triangles. One without area keeps the normal it had.
+/// Unit normals of the triangles. A triangle without area keeps the normal it had.
 ///
 /// # Panics
 /// When a corner is not below the number of particles, or there are fewer normals than triangles.
@@ -43,8 +43,8 @@ pub fn smooth(triangles: &[[u32; 3]], position: &Points, normals: &mut Points) {
     }
 }
 
-/// What [`smooth`] does, for a range of the rows of a sheet whose cells are cut as in `topology::grid`: cells side by side.
-/// Nothing but the normals of these rows is written, so that several threads may do different rows.
+/// Computes [`smooth`] for a range of the rows of a sheet whose cells are cut as in `topology::grid`: cells side by side. Only the normals
+/// of these rows are written, so that several threads may do different rows.
 ///
 /// # Panics
 /// When there are not as many positions and normals as particles, or not as many rows.
@@ -57,9 +57,10 @@ pub fn smooth_lattice(
 ) {
     let size = [lattice.columns, lattice.rows].map(|n| n as usize);
     let n = size[0] * size[1];
-    assert!(position.is_of(n), "positions of a sheet");
+    assert!(position.has(n), "positions of a sheet");
+    let all = [normals.x, normals.y, normals.z];
     assert!(
-        [normals.x, normals.y, normals.z].map(Shared::len) == [n; 3],
+        all.iter().all(|values| values.len() >= n),
         "normals of a sheet"
     );
     assert!(rows.end <= size[1], "rows of a sheet");
@@ -69,7 +70,7 @@ pub fn smooth_lattice(
     });
 }
 
-/// The normal of each particle.
+/// Sum of normals around each particle.
 #[derive(Clone, Copy)]
 struct Smooth<'a> {
     position: &'a Points,
@@ -111,7 +112,7 @@ mod tests {
         for (columns, rows) in [(2, 2), (3, 2), (5, 7), (17, 4), (33, 34), (64, 50)] {
             let cloth = ClothShape::grid(Vec2::new(2.0, 1.0), UVec2::new(columns, rows));
             let topology = Topology::build(&cloth, Vec3::ONE).expect("valid");
-            let lattice = topology.lattice.expect("a grid");
+            let lattice = *topology.lattice().expect("a grid");
             let position: Points = topology
                 .rest_positions
                 .iter()

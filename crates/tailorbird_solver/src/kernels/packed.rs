@@ -1,17 +1,17 @@
-//! Particles as four numbers each, for constraints that name any particles: one load finds a place and the inverse mass.
+//! Particles as four numbers each, for constraints between any particles: one load gets position and inverse mass.
 //!
-//! The lanes of a vector are x, y, z and the inverse mass of one particle here. Constraints are taken one after the other, each
-//! with the same operations whatever the instruction set.
+//! The lanes of a vector are x, y, z and the inverse mass of one particle here. Constraints are taken one after the other, each with the
+//! same operations whatever the instruction set.
 
 use bevy_math::Vec4;
 
 use super::lanes::with_scratch;
 use crate::points::Points;
 
-/// Place \[m\] and inverse mass [1/kg] of a particle.
+/// Position \[m\] and inverse mass [1/kg] of a particle.
 pub type Packed = [f32; 4];
 
-/// Calls `f` with the particles packed, and takes the places from there.
+/// Calls `f` with the particles packed, then stores their positions.
 pub fn with_packed<R>(
     position: &mut Points,
     inv_mass: &[f32],
@@ -34,7 +34,7 @@ pub fn with_packed<R>(
     })
 }
 
-/// The vector without what is in the lane of the inverse mass.
+/// The vector with 0 in the lane of the inverse mass.
 #[inline(always)]
 pub fn of_space(v: Vec4) -> Vec4 {
     let space = Vec4::new(1.0, 1.0, 1.0, 0.0).cmpgt(Vec4::ZERO);

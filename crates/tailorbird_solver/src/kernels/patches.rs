@@ -1,33 +1,33 @@
-//! Particles against a triangle mesh, of which each particle sees one plane.
+//! Particles against a triangle mesh, with one contact plane for each particle.
 //!
-//! The plane is where the surface is nearest to the particle, and holds for as long as the particle stays near the place where it was
-//! looked for. In most substeps of most particles it does, and a contact costs what one with a plane costs.
+//! The plane touches the surface at the point nearest to the particle, and is valid as long as the particle stays near the position at
+//! which the plane was computed. In most substeps of most particles it does, and a contact costs as much as one with a plane.
 
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Reading, V3, Window, each_window},
-    solid::{Motion, Near, Solid},
+    solid::{Distances, Motion, Solid},
 };
 use crate::{numbers::Numbers, points::Points};
 use std::ops::Range;
 
-/// The planes that the particles of a cloth see, in the axes of the mesh.
+/// Cached contact planes of a cloth's particles, in the axes of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
     /// Unit normals.
     pub normal: Points,
     /// Distances of the planes from the origin \[m\].
     pub offset: Numbers,
-    /// Where the particles were when the planes were looked for \[m\].
+    /// Positions of the particles when their planes were computed \[m\].
     pub place: Points,
-    /// How far from there the planes hold \[m\]; negative where there is none yet.
+    /// Distance from `place` within which the plane is valid \[m\]; negative where there is no plane yet.
     pub holds: Numbers,
 }
 
 impl Patches {
-    /// Forgets all planes, of `len` particles.
+    /// Forgets the planes of all `len` particles.
     pub fn reset(&mut self, len: usize) {
         for points in [&mut self.normal, &mut self.place] {
             points.clear();
@@ -39,7 +39,7 @@ impl Patches {
         }
     }
 
-    /// Sets the plane of a particle: through `point`, with this unit normal.
+    /// Sets the plane of particle `i`: through `point`, with this unit normal.
     pub fn set(&mut self, i: usize, point: Vec3, normal: Vec3, place: Vec3, holds: f32) {
         self.normal.set(i, normal);
         self.offset[i] = normal.dot(point);
@@ -47,21 +47,21 @@ impl Patches {
         self.holds[i] = holds;
     }
 
-    /// How far a point is above the plane of particle `i` \[m\].
+    /// Height of a point above the plane of particle `i` \[m\].
     pub fn height(&self, i: usize, point: Vec3) -> f32 {
         self.normal.get(i).dot(point) - self.offset[i]
     }
 }
 
-/// The planes of a cloth's particles, as a solid.
+/// Planes of a cloth's particles, as a solid.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct ContactPlanes<'a> {
     pub patches: &'a Patches,
     /// Distance that is kept from the planes \[m\].
     pub margin: f32,
 }
 
-impl Solid for Seen<'_> {
+impl Solid for ContactPlanes<'_> {
     const CONVEX: bool = false;
     const COMMON: bool = true;
 
@@ -71,19 +71,19 @@ impl Solid for Seen<'_> {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, window: Window, p: V3<S>) -> Distances<S> {
         let out = self.patches.normal.window(simd, window, 0);
         let offset = Reading(&self.patches.offset).load_at(simd, window);
-        Near {
+        Distances {
             distance: out.dot(p) - offset - self.margin,
             out,
-            // Unit vectors, or nothing.
+            // A unit vector, or 0 without a plane.
             length: out.dot(out),
         }
     }
 }
 
-/// Calls `found` for the free particles of a range whose plane does not hold any more, in order.
+/// Calls `found` for each free particle of a range whose plane is no longer valid, in order.
 pub fn outdated(
     level: Level,
     patches: &Patches,
@@ -118,8 +118,8 @@ fn outdated_with<S: Simd>(
             let moved = local - place;
             let holds = Reading(&patches.holds).load_at(simd, window);
             let free = Reading(inv_mass).load_at(simd, window).simd_gt(zero);
-            let still = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
-            let out = free & window.todo(simd) & !still;
+            let valid = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
+            let out = free & window.todo(simd) & !valid;
             if out.any_true() {
                 let lanes = out.select(one, zero);
                 for (k, lane) in lanes.as_slice().iter().enumerate() {

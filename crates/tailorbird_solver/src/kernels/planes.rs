@@ -1,15 +1,15 @@
-//! Convex solids given by planes.
+//! Convex solids as intersections of half-spaces.
 
 use bevy_math::{Vec3, Vec4};
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{Reading, V3, WIDEST, Window, each_window},
-    solid::{Near, Solid, lane},
+    solid::{Distances, Solid, lane},
 };
 use crate::{numbers::Numbers, points::Points};
 
-/// From this number of planes on those are looked for that can be the nearest to any of some points.
+/// Number of planes from which on only those are searched that can be the nearest to any point of a group.
 const MANY: usize = 32;
 
 /// Planes side by side.
@@ -22,7 +22,7 @@ pub struct PlaneList {
 }
 
 impl PlaneList {
-    /// Planes by their unit normals and distances from the origin \[m\]. The list is filled up with some that are nowhere.
+    /// Planes by their unit normals and distances from the origin \[m\]. The list is filled up with planes at infinity.
     pub fn new(planes: &[Vec4]) -> Self {
         let len = planes.len().next_multiple_of(WIDEST);
         let nowhere = std::iter::repeat_n(Vec4::W * f32::MAX, len - planes.len());
@@ -37,7 +37,7 @@ impl PlaneList {
         }
     }
 
-    /// How far a point is above the planes of a window \[m\].
+    /// Height of a point above the planes of a window \[m\].
     #[inline(always)]
     fn above<S: Simd>(&self, simd: S, window: Window, point: V3<S>) -> S::f32s {
         let offset = Reading(&self.offset).load_at(simd, window);
@@ -45,17 +45,17 @@ impl PlaneList {
     }
 }
 
-/// All that is behind each of these planes.
+/// Intersection of the half-spaces behind these planes.
 #[derive(Clone, Copy, Debug)]
 pub struct Planes<'a> {
     pub planes: &'a PlaneList,
     /// Distance that is kept from the planes \[m\].
     pub margin: f32,
-    /// Radius of the largest ball inside, about \[m\].
+    /// Approximate radius of the largest ball inside \[m\].
     pub size: f32,
 }
 
-/// The nearest plane so far, of each point.
+/// Nearest plane so far, for each point.
 #[derive(Clone, Copy)]
 struct Nearest<S: Simd> {
     distance: S::f32s,
@@ -76,10 +76,10 @@ impl<S: Simd> Nearest<S> {
 }
 
 impl Planes<'_> {
-    /// The nearest planes of points that lie near each other.
+    /// Finds the nearest planes of points that lie near each other.
     ///
-    /// Let m be the plane nearest to the middle of the points, and ρ how far they are from there. Plane k can be nearer than m to
-    /// one of them only if it is no further from the middle than m by |n′ − n| ρ, with n and n′ their normals.
+    /// Let m be the plane nearest to the middle of the points, and ρ the largest distance of a point from the middle. Plane k can be nearer
+    /// than m to a point only if it is no further from the middle than m by |n′ − n| ρ, with n and n′ their normals.
     #[inline(always)]
     fn of_some<S: Simd>(&self, simd: S, p: V3<S>, mut nearest: Nearest<S>) -> Nearest<S> {
         let middle = Vec3::new(middle::<S>(p.x), middle::<S>(p.y), middle::<S>(p.z));
@@ -144,7 +144,7 @@ impl Planes<'_> {
     }
 }
 
-/// Halfway between the lowest and the highest of some numbers side by side.
+/// Mean of the lowest and the highest of some numbers side by side.
 #[inline(always)]
 fn middle<S: Simd>(values: S::f32s) -> f32 {
     let values = values.as_slice();
@@ -162,7 +162,7 @@ impl Solid for Planes<'_> {
     }
 
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let mut nearest = Nearest {
             distance: S::f32s::splat(simd, f32::MIN),
             out: V3::splat(simd, Vec3::Y),
@@ -175,7 +175,7 @@ impl Solid for Planes<'_> {
         } else {
             nearest = self.of_some(simd, p, nearest);
         }
-        Near {
+        Distances {
             distance: nearest.distance - self.margin,
             out: nearest.out,
             length: S::f32s::splat(simd, 1.0),

@@ -1,4 +1,4 @@
-//! The range of coordinates, and whether they are finite.
+//! Range of coordinates, and a check that they are finite.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::lanes::{Reading, each_window};
 use crate::points::Points;
 
-/// The lowest and the highest of these numbers and of `low` and `high`; NaN does not count.
+/// Lowest and highest of these numbers and of `low` and `high`; NaN does not count.
 pub fn range(level: Level, values: &[f32], (low, high): (f32, f32)) -> (f32, f32) {
     dispatch!(level, simd => range_with(simd, values, (low, high)))
 }
@@ -31,7 +31,7 @@ fn range_with<S: Simd>(simd: S, values: &[f32], (low, high): (f32, f32)) -> (f32
     )
 }
 
-/// The box around some particles at two times.
+/// Box around some particles at two times.
 pub fn bounds(level: Level, times: [&Points; 2], particles: Range<usize>) -> (Vec3, Vec3) {
     dispatch!(level, simd => bounds_with(simd, times, particles))
 }
@@ -50,7 +50,7 @@ fn bounds_with<S: Simd>(
     (Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1))
 }
 
-/// The lowest and the highest of some numbers of two lists.
+/// Lowest and highest of some numbers of two lists.
 #[inline(always)]
 fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
     let lanes = S::f32s::LEN;
@@ -69,7 +69,7 @@ fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
         highest = highest.max(a.max(b));
     }
     if a.len() % lanes != 0 {
-        // The last vectors overlap the ones before.
+        // The last vector of each list overlaps the vector before.
         let [a, b] = [a, b].map(|values| &values[values.len() - lanes..]);
         let (a, b) = (S::f32s::from_slice(simd, a), S::f32s::from_slice(simd, b));
         lowest = lowest.min(a.min(b));
@@ -78,14 +78,14 @@ fn ends<S: Simd>(simd: S, lists: [&[f32]; 2], at: Range<usize>) -> (f32, f32) {
     (lowest.reduce_min(), highest.reduce_max())
 }
 
-/// Whether no coordinate of these points is infinite or NaN.
+/// Returns whether all coordinates of these points are finite, neither infinite nor NaN.
 pub fn are_finite(level: Level, points: &Points) -> bool {
     [&points.x, &points.y, &points.z]
         .into_iter()
         .all(|values| is_finite(level, values))
 }
 
-/// Whether none of these numbers is infinite or NaN: 0 · v is 0 for finite ones alone.
+/// Returns whether all of these numbers are finite: 0 · v is 0 for finite ones alone.
 fn is_finite(level: Level, values: &[f32]) -> bool {
     dispatch!(level, simd => is_finite_with(simd, values))
 }
@@ -138,6 +138,8 @@ mod tests {
                     values[i] = -3.0;
                     assert_eq!(range(level, &values, (0.0, 2.0)), (-3.0, 2.0));
                     assert!(is_finite(level, &values));
+                    values[i] = 3.0;
+                    assert_eq!(range(level, &values, (-2.0, 0.0)), (-2.0, 3.0));
                     for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                         values[i] = wrong;
                         assert!(!is_finite(level, &values), "{i} of {len}, {level:?}");

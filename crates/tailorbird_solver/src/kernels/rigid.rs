@@ -1,13 +1,13 @@
 //! Rigid motion: x' = R x + t.
 //!
-//! Kinematic particles (`inv_mass` 0) keep their coordinates in a frame that moves. Where they were in the world becomes
-//! their previous position, so that one that is released flies on with the velocity it was moved with.
+//! Kinematic particles (`inv_mass` 0) keep their coordinates in a frame that moves. Their previous position becomes the one that they had
+//! in the world, so that a released particle flies on with the velocity of its holder.
 
 use bevy_math::{Mat3, Vec3};
 
 use crate::points::Points;
 
-/// Expresses particles in a frame that moved. `position` of free particles stays where it is in the world.
+/// Expresses particles in a frame that moved. The `position` of a free particle stays where it is in the world.
 pub fn change_frame(
     rotation: Mat3,
     shift: Vec3,
@@ -33,8 +33,7 @@ pub fn rotate(rotation: Mat3, vectors: &mut Points) {
     }
 }
 
-/// Adds the displacement of a substep by centrifugal acceleration about the origin: −φ × (φ × x), with the angle φ of the
-/// substep, about its axis \[rad\].
+/// Adds the centrifugal displacement of a substep about the origin: −φ × (φ × x), with the angle φ of the substep, about its axis \[rad\].
 pub fn fling(turned: Vec3, inv_mass: &[f32], position: &mut Points) {
     for (i, w) in inv_mass.iter().enumerate() {
         if *w > 0.0 {

@@ -9,35 +9,35 @@ use crate::points::Points;
 pub struct RigidMotion {
     /// Centre of mass \[m\].
     pub center: Vec3,
-    /// What the centre moves by \[m\].
+    /// Displacement of the centre \[m\].
     pub displacement: Vec3,
-    /// What the whole turns by: axis times angle \[rad\].
+    /// Rotation of the whole: axis times angle \[rad\].
     pub rotation: Vec3,
 }
 
-/// How many particles a rigid motion is measured by, at least.
+/// Least number of particles that a rigid motion is measured by.
 const SAMPLES: usize = 256;
 
 impl RigidMotion {
-    /// What a point at the origin moves by \[m\]; one at x by the cross product of the rotation and x more.
+    /// Displacement of a point at the origin \[m\]; a point at x is displaced by the cross product of the rotation and x in addition.
     #[inline]
     pub fn at_origin(&self) -> Vec3 {
         self.displacement - self.rotation.cross(self.center)
     }
 
-    /// What a point moves by \[m\].
+    /// Displacement of a point \[m\].
     pub fn at(&self, point: Vec3) -> Vec3 {
         self.rotation.cross(point) + self.at_origin()
     }
 
-    /// The rigid motion that has the linear and the angular momentum of these particles, of which it takes a sample.
-    /// Without rotation where they lie in a line.
+    /// Rigid motion that has the linear and the angular momentum of these particles, measured by a sample of them. Without rotation where
+    /// they lie in a line.
     pub fn fit(mass: &[f32], position: &Points, previous: &Points) -> Self {
         // Odd, so that the sample is not one column of a sheet.
         Self::of_every((mass.len() / SAMPLES) | 1, mass, position, previous)
     }
 
-    /// That of all particles.
+    /// Rigid motion by all particles.
     pub fn of_all(mass: &[f32], position: &Points, previous: &Points) -> Self {
         Self::of_every(1, mass, position, previous)
     }

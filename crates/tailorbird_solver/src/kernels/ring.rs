@@ -1,13 +1,13 @@
-//! Chains that are closed: all distance constraints around a ring at once.
+//! Closed chains: all distance constraints around a ring at once.
 //!
 //! A ring of n edges is a chain of n + 1 particles whose last is its first, and its last edge, the closing one, meets the first there. So
-//! the system of `line` has two more entries, in the corners. The first edge is left out at first: elimination of the others carries
-//! along what each of them owes to it, μ_e = A_e + B_e μ_0, so that of the row of the first edge one unknown is left,
+//! the system of `line` has two more entries, in the corners. The first edge is left out at first. Elimination of the others keeps their
+//! dependence on it, μ_e = A_e + B_e μ_0, so that one unknown is left in the row of the first edge,
 //!
 //! - (D_0 − b_1 B_1 − b_n B_{n−1}) μ_0 = r_0 + b_1 A_1 + b_n A_{n−1}
 //!
-//! with b_1 and b_n for what it shares with the second and the closing edge (Temperton 1975). Then substitution goes on as in `line`. Lanes may
-//! have rings of different lengths, and open chains, which have no closing edge: b_n = 0.
+//! with b_1 and b_n for the off-diagonal entries of the first edge with the second and the closing edge (Temperton 1975). Then substitution
+//! goes on as in `line`. Lanes may have rings of different lengths, and open chains, which have no closing edge: b_n = 0.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -21,12 +21,12 @@ use super::{
     lanes::{Factor, Shared, SharedPoints, V3, WIDEST},
     lines::{FREE, Lines, NO_MASS, PRESSED, apply},
     row::{beside, own},
-    share::{Bounds, share},
+    share::{TensionBounds, share},
 };
 use crate::topology::chains::OPEN;
 
-/// Solves as many chains as a vector has lanes, each in the form of columns, side by side from the first on. `closing` is for each lane its
-/// closing edge, or [`OPEN`]; `factors` is scratch of at least 2 · len · lanes.
+/// Solves as many chains as a vector has lanes, each in the form of columns, side by side from the first on. `closing` has for each lane
+/// its closing edge, or [`OPEN`]; `factors` is scratch of at least 2 · len · lanes.
 #[inline(always)]
 pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
     simd: S,
@@ -47,7 +47,7 @@ pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
         n: normal::<S, CONTACT>(simd, lines, 0),
     };
     let first = ring.first_multiplier();
-    let bounds = Bounds::new(bears, lines.give);
+    let bounds = TensionBounds::new(bears, lines.give);
     let taut = if bounds.gives() {
         ring.substitute::<true>(first, bounds)
     } else {
@@ -56,7 +56,7 @@ pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
     let joints = Joints { lines, closing };
     joints.copy::<S, CONTACT>();
     if CONTACT != PRESSED && !taut.is_empty() {
-        // All others with the joints where they are, then the joints.
+        // First all other particles, with the joints held, then the joints.
         let w = joints.hold::<S>();
         let pulls = taut.clone();
         simd.vectorize(
@@ -67,7 +67,7 @@ pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
     }
 }
 
-/// Where rings start and end: at one particle, which is there twice.
+/// Joints of rings: the particle at which a ring starts and ends, stored twice.
 #[derive(Clone, Copy)]
 struct Joints<'a> {
     lines: Lines<'a>,
@@ -75,7 +75,7 @@ struct Joints<'a> {
 }
 
 impl Joints<'_> {
-    /// The lanes that are rings, with their closing edges.
+    /// Lanes that are rings, with their closing edges.
     #[inline(always)]
     fn rings<S: Simd>(self) -> impl Iterator<Item = (usize, usize)> {
         let lanes = self.closing[..S::f32s::LEN].iter().enumerate();
@@ -84,7 +84,7 @@ impl Joints<'_> {
             .map(|(lane, edge)| (lane, *edge as usize))
     }
 
-    /// The last particle is where the first is.
+    /// Copies the first particle to the last.
     #[inline(always)]
     fn copy<S: Simd, const CONTACT: u8>(self) {
         let (SharedPoints { x, y, z }, pressed) = (self.lines.position, self.lines.pressed);
@@ -99,7 +99,7 @@ impl Joints<'_> {
         }
     }
 
-    /// Holds them. Returns the inverse masses that they had.
+    /// Makes the joints kinematic. Returns their inverse masses.
     #[inline(always)]
     fn hold<S: Simd>(self) -> [f32; WIDEST] {
         let inv_mass = self.lines.inv_mass;
@@ -113,10 +113,11 @@ impl Joints<'_> {
         had
     }
 
-    /// Moves each by the tension of its edges beyond what they bear, which is noted for the edges `taut`, when all others have been moved as if it
-    /// were held: what that has left of the system of `share` is a ring's corners, and solved as those of its edges are, y_k = A_k + B_k y_0.
+    /// Moves each joint by the tension beyond the stable limit of its edges, which is noted for the edges `taut`. All other particles have
+    /// been moved before, as if the joint were held. The rest of the system of `share` has entries in the corners, as that of a ring's
+    /// edges, and is solved like it: y_k = A_k + B_k y_0.
     ///
-    /// Where particles are in contact B would be a matrix. There the joint alone moves, and the sum that is the least further on falls as well.
+    /// With particles in contact B would be a matrix. There the joint alone moves, and the sum to be minimised falls as well.
     #[inline(always)]
     fn share<S: Simd, const CONTACT: u8>(
         self,
@@ -208,7 +209,7 @@ impl Joints<'_> {
     }
 }
 
-/// The closing edges as numbers; −1 where there is none.
+/// Indices of the closing edges; −1 where there is none.
 #[inline(always)]
 fn last_edges<S: Simd>(simd: S, closing: &[u32]) -> S::f32s {
     let mut last = [-1.0; WIDEST];
@@ -236,22 +237,22 @@ struct Ring<'a, S: Simd, E, const CONTACT: u8> {
     lines: Lines<'a>,
     edges: E,
     factors: Shared<'a>,
-    /// The closing edges.
+    /// Indices of the closing edges.
     last: S::f32s,
-    /// The first edge, and the inverse mass and the normal of the particle that it shares with the closing one.
+    /// The first edge, and the inverse mass and the normal of the joint, the particle between the first and the closing edge.
     d: V3<S>,
     w: S::f32s,
     n: V3<S>,
 }
 
 impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
-    /// How many edges a lane has.
+    /// Number of edges of the longest lane.
     #[inline(always)]
     fn count(self) -> usize {
         self.lines.len - 1
     }
 
-    /// A number where the edge `e` is the closing one, and else 0.
+    /// `value` in the lanes whose closing edge is `e`, and 0 in the others.
     #[inline(always)]
     fn if_last(self, e: usize, value: S::f32s) -> S::f32s {
         let edge = S::f32s::splat(self.simd, e as f32);
@@ -259,7 +260,7 @@ impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
         self.last.simd_eq(edge).select(value, zero)
     }
 
-    /// Eliminates all edges but the first, and solves for that.
+    /// Eliminates all edges but the first, and solves for the multiplier of the first.
     #[inline(always)]
     fn first_multiplier(self) -> S::f32s {
         let Self { simd, lines, .. } = self;
@@ -318,14 +319,19 @@ impl<S: Simd, E: Edges<S>, const CONTACT: u8> Ring<'_, S, E, CONTACT> {
             left_of_first -= owed * by_first;
             b = a;
         }
-        // Of a ring that lies in one place rounding may leave less.
+        // For a ring of which all particles lie in one place, rounding may leave less.
         let least = diagonal_of_first * lines.give.compliance;
         side_of_first / left_of_first.max(least).max(least_w)
     }
 
-    /// Substitutes back from the multiplier of the first edge. Returns the edges among which there is tension that [`share`] wants.
+    /// Substitutes back from the multiplier of the first edge. Returns the range of edges whose tension beyond the stable limit [`share`]
+    /// needs.
     #[inline(always)]
-    fn substitute<const GIVES: bool>(self, first: S::f32s, bounds: Bounds<S>) -> Range<usize> {
+    fn substitute<const GIVES: bool>(
+        self,
+        first: S::f32s,
+        bounds: TensionBounds<S>,
+    ) -> Range<usize> {
         let Self {
             simd,
             lines,

@@ -33,7 +33,7 @@ fn tube(around: u32, rings: u32) -> Topology {
 }
 
 fn fabric(topology: &Topology) -> &Fabric {
-    topology.fabric.as_ref().expect("no grid")
+    topology.fabric().expect("no grid")
 }
 
 /// Solves the rings alone, so many times.
@@ -61,7 +61,7 @@ fn solve(fabric: &Fabric, position: &mut Points, inv_mass: &mut [f32], give: Giv
     }
 }
 
-/// The shortest and the longest of the edges around, relative to their length at rest.
+/// Shortest and longest edge around, relative to their length at rest.
 fn around(fabric: &Fabric, position: &Points) -> [f32; 2] {
     let edges = fabric.chains().edges().filter(|(ends, _)| {
         let [a, b] = ends.map(|i| position.get(i as usize));
@@ -81,7 +81,7 @@ fn widened(topology: &Topology, times: f32) -> Points {
     topology.rest_positions.iter().map(|p| *p * wider).collect()
 }
 
-/// As a chain that is cut somewhere it would be longer there.
+/// A ring solved as a chain that is cut somewhere would be longer there.
 #[test]
 fn a_ring_that_is_too_wide_shrinks_evenly() {
     for (n, times) in [(5, 1.1), (24, 1.1), (24, 0.9), (200, 1.05)] {
@@ -105,7 +105,7 @@ fn a_ring_that_is_too_wide_shrinks_evenly() {
     }
 }
 
-/// Where it is held at one particle, and so at both ends of its chain, that one stays.
+/// A ring that is held at one particle, and so at both ends of its chain, keeps that particle in place.
 #[test]
 fn a_ring_that_is_held_stays_there() {
     let topology = tube(24, 3);
@@ -122,7 +122,7 @@ fn a_ring_that_is_held_stays_there() {
     }
 }
 
-/// Tension that a substep does not stand is shared all around as well.
+/// Tension beyond the stable limit of a substep is shared all around as well.
 #[test]
 fn a_ring_that_is_far_too_wide_shrinks_without_a_seam() {
     let topology = tube(64, 3);
@@ -142,7 +142,7 @@ fn a_ring_that_is_far_too_wide_shrinks_without_a_seam() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Nothing but the edges acts on it: momentum and angular momentum stay, whatever is asked for, and however they lie.
+    /// Forces of the edges alone conserve momentum and angular momentum, whatever is asked for, and however the edges lie.
     #[test]
     fn rings_keep_their_momentum(
         n in 3_u32..40,

@@ -8,7 +8,7 @@ use super::{
     lines::{FREE, Give, LEAST_PIVOT, NO_MASS},
 };
 
-/// The diagonal and the right side of an edge `d`, by the inverse masses and contact normals of its ends.
+/// Diagonal and right side of an edge `d`, from the inverse masses and contact normals of its ends.
 #[inline(always)]
 pub(super) fn own<S: Simd, const CONTACT: u8>(
     simd: S,
@@ -32,8 +32,7 @@ pub(super) fn own<S: Simd, const CONTACT: u8>(
     [diagonal, ((l2 - q) * 0.5).min(quarter)]
 }
 
-/// What an edge `d` shares with the one before it, which ends at a particle of inverse mass `w` and contact normal `n`; with the sign
-/// changed it is beside the diagonal.
+/// Negative off-diagonal of an edge `d` and the edge before it. They meet at a particle of inverse mass `w` and contact normal `n`.
 #[inline(always)]
 pub(super) fn beside<S: Simd, const CONTACT: u8>(
     w: S::f32s,

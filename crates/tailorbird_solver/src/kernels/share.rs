@@ -1,19 +1,19 @@
-//! Tension that a substep does not stand along edges as they lie acts along them as they will lie.
+//! Sharing of tension beyond the stable limit: it acts along edges as they will lie at the end, not as they are predicted to lie.
 //!
-//! With tension X_k \[kg\] · substep⁻² of the edges k beyond what they bear, particles z_k that move along surfaces alone, P_k = I − n nᵀ, and
-//! the ends of the edges where they will be, x = z + y:
+//! With tension X_k \[kg\] · substep⁻² of the edges k beyond that limit, particles z_k that move along surfaces alone, P_k = I − n nᵀ, and
+//! the ends of the edges at their final positions, x = z + y:
 //!
 //! - y_k = w_k P_k (X_k (x_{k+1} − x_k) − X_{k−1} (x_k − x_{k−1}))
 //!
-//! That is the least of Σ |y|²/(2 w) + Σ X |x_{k+1} − x_k|²/2 along the surfaces: no wave grows whatever X is, where the same tension along
-//! edges as they lie lets waves grow from κ = 4 w X = 4/3 on. By elimination, y_k = p_k + g_k P_k y_{k+1}, with f_k = X_k (z_{k+1} − z_k) −
-//! X_{k−1} (z_k − z_{k−1}) and numbers for pivots:
+//! This y is the minimum of Σ |y|²/(2 w) + Σ X |x_{k+1} − x_k|²/2 along the surfaces: no wave grows whatever X is, where the same tension
+//! along edges as they are predicted lets waves grow from κ = 4 w X = 4/3 on. By elimination, y_k = p_k + g_k P_k y_{k+1}, with f_k = X_k
+//! (z_{k+1} − z_k) − X_{k−1} (z_k − z_{k−1}) and scalars for pivots:
 //!
 //! - s_k = 1 + w_k (X_k + X_{k−1} (1 − c_k g_{k−1})), g_k = w_k X_k/s_k, p_k = w_k P_k (f_k + X_{k−1} p_{k−1})/s_k
 //!
-//! A pivot would be a matrix where normals differ. With c_k = 1 − n_{k−1}² + (n_{k−1} · n_k)², the least by which P_k P_{k−1} P_k shortens
-//! anything, what is solved differs from the above by something positive on the diagonal: by nothing where normals are the same, and never
-//! so that a step goes too far.
+//! A pivot would be a matrix where normals differ. c_k = 1 − n_{k−1}² + (n_{k−1} · n_k)² is the least factor by which P_k P_{k−1} P_k
+//! shortens any vector. With it, the solved system differs from the above by a positive term on the diagonal: 0 where normals are the same,
+//! and never such that a step goes too far.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -28,22 +28,22 @@ use super::{
     lines::{FREE, Give, LARGEST_KAPPA, Lines, NO_MASS, PRESSED},
 };
 
-/// What multipliers are bounded by, |μ| \[kg\].
+/// Bounds of multipliers, |μ| \[kg\].
 ///
-/// Of μ no more than κ/(4 w) acts along the edge as it lies, w being the largest inverse mass of a line, of its ends half
-/// ([`super::edges::Whole::bears`]): with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave across
-/// the line is pulled back by more than κ of itself.
+/// Of μ no more than κ/(4 w) acts along the edge as it is predicted to lie, w being the largest inverse mass of a line, of its ends half
+/// ([`super::edges::Whole::bears`]): with p = 1/2, and 1 at an end, |u_a − u_b|² ≤ 4 w (p_a u_a²/w_a + p_b u_b²/w_b), so that no wave
+/// across the line is pulled back by more than κ of itself.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds<S: Simd> {
+pub(super) struct TensionBounds<S: Simd> {
     give: Give,
-    /// What acts along edges as they lie.
+    /// Stable limit: the most that acts along edges as they are predicted to lie.
     borne: S::f32s,
-    /// What there is at all: pull, and push.
+    /// Largest pull and push in all.
     pulls: S::f32s,
     pushes: S::f32s,
 }
 
-impl<S: Simd> Bounds<S> {
+impl<S: Simd> TensionBounds<S> {
     #[inline(always)]
     pub fn new(bears: S::f32s, give: Give) -> Self {
         let [borne, pulls, pushes] = [LARGEST_KAPPA, give.pull, give.push].map(|k| bears * k);
@@ -55,13 +55,13 @@ impl<S: Simd> Bounds<S> {
         }
     }
 
-    /// Whether there are bounds of all there is.
+    /// Returns whether pull or push is bounded in all.
     #[inline(always)]
     pub fn gives(self) -> bool {
         self.give.pull.min(self.give.push) < f32::MAX
     }
 
-    /// What there is of a multiplier.
+    /// Multiplier within the bounds of pull and push.
     #[inline(always)]
     pub fn given<const GIVES: bool>(self, mu: S::f32s) -> S::f32s {
         if GIVES {
@@ -71,8 +71,8 @@ impl<S: Simd> Bounds<S> {
         }
     }
 
-    /// What acts of the multiplier of the edge `e`, `d`, as it lies. What is beyond is noted in the second half of its slots of `factors`,
-    /// for [`share`], and `e` is added to the range of edges of which some have that. Edges come in falling order.
+    /// Part of the multiplier of the edge `e`, `d`, that acts along it as it is predicted to lie. The rest is noted in the second half of
+    /// the edge's slots of `factors`, for [`share`], and the range `taut` is extended to `e`. Edges come in falling order.
     #[inline(always)]
     pub fn borne<E: Edges<S>, const CONTACT: u8>(
         self,
@@ -85,17 +85,17 @@ impl<S: Simd> Bounds<S> {
         d: V3<S>,
     ) -> S::f32s {
         let zero = S::f32s::splat(simd, 0.0);
-        // Bodies that a cloth carries have substeps enough for their weight.
+        // A cloth that carries bodies has substeps enough for their weight.
         if CONTACT == PRESSED || !mu.simd_lt(zero - self.borne).any_true() {
             return mu;
         }
         let half = S::f32s::splat(simd, 0.5);
         let slot = |k: usize| (2 * k + 1) * S::f32s::LEN;
         let beyond = (zero - mu - self.borne).max(zero);
-        // It will act on what is as long as at rest.
+        // X acts on an edge that is as long as at rest: X = μ |d|/L, by the series of the root, and no more than 2 μ.
         let l2 = edges.at(simd, e).l2.max(S::f32s::splat(simd, NO_MASS));
         let longer = half + d.dot(d) * (half * (S::f32s::splat(simd, 1.0) / l2));
-        // None in between has any.
+        // The edges between `e` and the range have none.
         for k in e + 1..taut.start {
             factors.store::<S>(slot(k), zero);
         }
@@ -105,8 +105,8 @@ impl<S: Simd> Bounds<S> {
     }
 }
 
-/// Solves as many chains as a vector has lanes, whose X_k is in the second half of the slots of `factors` for a range of edges, and 0 for
-/// all others: run by run of edges of which any lane has some.
+/// Solves as many chains as a vector has lanes, run by run of edges that have any tension to share. X_k is in the second half of the slots
+/// of `factors` for a range of edges, and 0 for all others.
 #[inline(always)]
 pub(super) fn share<S: Simd, const CONTACT: u8>(
     simd: S,
@@ -129,7 +129,7 @@ pub(super) fn share<S: Simd, const CONTACT: u8>(
     }
 }
 
-/// X_k, 0 beyond the range.
+/// Loads X_k; 0 beyond the range.
 #[inline(always)]
 fn tension<S: Simd>(simd: S, factors: Shared, edges: &Range<usize>, k: usize) -> S::f32s {
     if k < edges.end {

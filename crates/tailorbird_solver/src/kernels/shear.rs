@@ -1,14 +1,14 @@
 //! The diagonals of the cells of a sheet.
 //!
-//! Each is projected by itself, without a square root: s = 2 (q − L²)/(3 q + L²) is 1 − L/|d| to second order around rest, and
-//! never more than that. The cells between two rows share no particle with those two rows further on, so there are two kinds of
-//! pairs of rows: even ones (0 and 1, 2 and 3, …), which come first, and odd ones (1 and 2, …).
+//! Each is projected by itself, without a square root: s = 2 (q − L²)/(3 q + L²) is 1 − L/|d| to second order around rest, and never more
+//! than that. The cells of one pair of rows share no particle with the cells of the next pair but one, so there are two kinds of pairs:
+//! even ones (0 and 1, 2 and 3, …), which come first, and odd ones (1 and 2, …).
 //!
 //! # Several threads
 //!
-//! Blocks of rows that start at even rows can be solved at the same time by [`solve`], which leaves out the pair whose lower
-//! row belongs to the next block. When all blocks are done, [`solve_seam`] does these, again all at the same time. The order in
-//! which a particle is moved, and so the result, is the same for any blocks.
+//! Blocks of rows that start at even rows can be solved at the same time by [`solve`], which leaves out the pair whose lower row belongs to
+//! the next block. When all blocks are done, [`solve_seam`] does these pairs, again all at the same time. The order in which a particle is
+//! moved, and so the result, is the same for any blocks.
 
 use std::ops::Range;
 
@@ -19,14 +19,14 @@ use super::{
     lattice::Sheet,
 };
 
-/// What the diagonals of the cells resist with.
+/// Stiffness of the diagonals of the cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     /// L \[m\].
     pub rest_length: f32,
     /// α̃ = α/h² [1/kg].
     pub alpha_tilde: f32,
-    /// Whether the diagonals that rise to the right come first.
+    /// True if the diagonals that rise to the right come first.
     pub rising_first: bool,
 }
 
@@ -47,8 +47,8 @@ pub fn solve_seam(level: Level, sheet: Sheet, shear: Shear, row: usize) {
     });
 }
 
-/// Even pairs, and behind them the odd ones, while both are in the cache. The two directions of a pair take turns with those of
-/// the other: a vector that was just stored in two parts is loaded only when it has reached the cache.
+/// Projects the even pairs, and each odd pair right after the even one before it, while both are in the cache. The two directions of a pair
+/// take turns with those of the other pair: a vector that was just stored in two parts is loaded only when it has reached the cache.
 #[inline(always)]
 fn solve_with<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>) {
     for even in (rows.start..rows.end + 3).step_by(2) {
@@ -63,7 +63,7 @@ fn solve_with<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>) 
     }
 }
 
-/// The springs of one direction in the cells between two rows.
+/// Projects the springs of one direction in the cells between two rows.
 #[inline(always)]
 fn diagonals<S: Simd>(simd: S, sheet: Sheet, shear: Shear, rows: Range<usize>, rising: bool) {
     let (upper, lower) = (rows.start * sheet.columns, (rows.end - 1) * sheet.columns);

@@ -1,10 +1,9 @@
-//! Particles against a moving rigid solid that tells how far points are from it.
+//! Particles against a moving rigid solid with a distance function.
 //!
-//! A particle's path is taken in the axes of the solid, so that a turning solid stands still and takes along what rubs on it.
-//! Where the path is short against the solid, the distance of its end decides. Where it is long, it is followed from its start by
-//! Newton's method: the plane through the nearest point of a convex solid has all of it behind, so that the path cannot meet the
-//! solid before it meets the plane; where it does, the next plane is taken. The last plane is where the particle is stopped,
-//! whatever lies beyond: nothing tunnels at any speed.
+//! A particle's path is taken in the axes of the solid, so that a turning solid stands still and takes along particles that rub on it. A
+//! path that is short compared to the solid needs only the distance at its end. A long path is followed from its start by Newton's method:
+//! a convex solid lies behind the plane through its nearest point, so that the path cannot meet the solid before it meets the plane; where
+//! it does, the next plane is taken. The last plane is where the particle is stopped, whatever lies beyond: nothing tunnels at any speed.
 
 use std::ops::Range;
 
@@ -16,29 +15,29 @@ use super::{
     lanes::{V3, Window, each_window},
 };
 
-/// Planes that a long path is followed by.
+/// Number of planes that a long path is followed by.
 const PLANES: u32 = 12;
 
-/// A path is long from this part of the solid's size on.
+/// Length from which on a path is long, as a part of the solid's size.
 const LONG: f32 = 0.25;
 
-/// A solid's motion during one substep, in the frame of the particles.
+/// Motion of a solid during one substep, in the frame of the particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// Its origin at the start \[m\].
+    /// Origin at the start \[m\].
     pub from: Vec3,
-    /// Its origin at the end \[m\].
+    /// Origin at the end \[m\].
     pub to: Vec3,
-    /// From its axes to those of the frame, at the end.
+    /// Rotation from the solid's axes to those of the frame, at the end.
     pub axes: Mat3,
-    /// How it turns during the substep.
+    /// Rotation during the substep.
     pub turn: Mat3,
     /// Coulomb friction [-].
     pub friction: f32,
 }
 
 impl Motion {
-    /// How a solid goes from one place in the frame of the particles to another.
+    /// Motion of a solid from one pose in the frame of the particles to another.
     pub fn new([from, to]: [Isometry3d; 2], friction: f32) -> Self {
         let axes = Mat3::from_quat(to.rotation);
         Self {
@@ -55,11 +54,11 @@ impl Motion {
     }
 }
 
-/// How far points are from a solid.
-pub struct Near<S: Simd> {
+/// Distances of points from a solid.
+pub struct Distances<S: Simd> {
     /// Distance from the surface, negative inside \[m\].
     pub distance: S::f32s,
-    /// Where the surface is nearest, points out of it.
+    /// Direction out of the solid at the nearest point of the surface.
     pub out: V3<S>,
     /// Length of `out`.
     pub length: S::f32s,
@@ -67,20 +66,20 @@ pub struct Near<S: Simd> {
 
 /// A solid around its origin, margin included.
 pub trait Solid: Copy + Sync {
-    /// Whether it is convex, so that long paths can be followed.
+    /// True if the solid is convex, so that long paths can be followed.
     const CONVEX: bool = true;
 
-    /// Whether there are many of it in games, so that the widest vectors are worth the time to compile code for them.
+    /// True for shapes of which games have many: worth the time to compile code for the widest vectors.
     const COMMON: bool = false;
 
-    /// How far a particle can go in it before it comes nearer to the other side \[m\].
+    /// Distance that a particle can go in the solid before it comes nearer to the other side \[m\].
     fn size(&self) -> f32;
 
-    /// How far points are from it. `window` tells which particles they are of.
-    fn near<S: Simd>(&self, simd: S, window: Window, point: V3<S>) -> Near<S>;
+    /// Distances of points from the solid. `window` tells which particles they belong to.
+    fn distances<S: Simd>(&self, simd: S, window: Window, point: V3<S>) -> Distances<S>;
 }
 
-/// Vectors in other axes.
+/// Rotated vectors.
 #[inline(always)]
 pub(super) fn turned<S: Simd>(m: Mat3, v: V3<S>) -> V3<S> {
     V3 {
@@ -90,7 +89,7 @@ pub(super) fn turned<S: Simd>(m: Mat3, v: V3<S>) -> V3<S> {
     }
 }
 
-/// Where paths (in the axes of the solid) end with respect to the surface, or to the plane that stopped them before.
+/// Distances of the ends of paths (in the axes of the solid) from the surface, or from the plane that stopped the path before.
 #[inline(always)]
 fn meet<S: Simd, Q: Solid>(
     simd: S,
@@ -98,9 +97,9 @@ fn meet<S: Simd, Q: Solid>(
     window: Window,
     [start, end]: [V3<S>; 2],
     free: S::mask32s,
-) -> Near<S> {
+) -> Distances<S> {
     let zero = S::f32s::splat(simd, 0.0);
-    let mut near = solid.near(simd, window, end);
+    let mut near = solid.distances(simd, window, end);
     if !Q::CONVEX {
         return near;
     }
@@ -111,7 +110,7 @@ fn meet<S: Simd, Q: Solid>(
     let reaches = near.distance.simd_lt(zero) | (near.distance * near.distance).simd_lt(t2);
     let candidates = free & long & reaches;
     if candidates.any_true() {
-        // Few paths are long: one by one.
+        // Few paths are long: they are followed one by one.
         let candidates = candidates.select(S::f32s::splat(simd, 1.0), zero);
         for (k, candidate) in candidates.as_slice().iter().enumerate() {
             if *candidate == 0.0 {
@@ -136,17 +135,17 @@ pub(super) fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
     Vec3::new(v.x.as_slice()[k], v.y.as_slice()[k], v.z.as_slice()[k])
 }
 
-/// How far a point is from a solid, and the unit vector out of it.
+/// Distance of a point from a solid, and the unit vector out of it.
 #[inline(never)]
 fn near_one<Q: Solid>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
     let simd = Fallback::new();
-    let near = solid.near(simd, Window::single(i), V3::splat(simd, point));
+    let near = solid.distances(simd, Window::single(i), V3::splat(simd, point));
     let out = unit(simd, near.out, near.length);
     (near.distance.as_slice()[0], lane(out, 0))
 }
 
-/// Follows a long path from its start: how far its end is beyond the plane that stops it, and where that points; none where
-/// nothing does.
+/// Follows a long path from its start. Returns the height of its end above the plane that stops it, and the plane's normal; `None` where
+/// nothing stops it.
 #[inline(never)]
 fn sweep<Q: Solid>(solid: &Q, i: usize, start: Vec3, end: Vec3) -> Option<(f32, Vec3)> {
     let travel = end - start;
@@ -170,7 +169,7 @@ fn sweep<Q: Solid>(solid: &Q, i: usize, start: Vec3, end: Vec3) -> Option<(f32, 
         time = next;
         (distance, plane) = near_one(solid, i, start + time * travel);
     }
-    // Where rounding has the path begin below the surface, it ends above all the same, and not where it began.
+    // If the path begins below the surface by rounding, it ends above it all the same, not at its start.
     let at = start + time * travel;
     Some((plane.dot(end - at) + distance, plane))
 }
@@ -187,7 +186,7 @@ pub fn collide_all<Q: Solid>(
     if Q::COMMON {
         return dispatch!(level, simd => collide_all_with(simd, solid, motion, particles, range));
     }
-    // Two instruction sets: there are many solids, and each takes long to compile.
+    // Two instruction sets only: there are many solids, and each takes long to compile.
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     let level = level.as_avx2().map_or(Level::fallback(), Level::Avx2);
     match level {
@@ -248,7 +247,7 @@ fn collide_all_with<S: Simd, Q: Solid>(
             any = true;
             let depth = (zero - near.distance).max(zero);
             let depth = contacts.pushed(simd, [start, end], (normal, depth), touching, || {
-                zero - solid.near(simd, window, local[0]).distance
+                zero - solid.distances(simd, window, local[0]).distance
             });
             let still = V3::splat(simd, Vec3::ZERO);
             let path = contacts.resolve(
@@ -275,26 +274,26 @@ fn collide_all_with<S: Simd, Q: Solid>(
     any
 }
 
-/// A contact of one particle.
+/// Contact of one particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Unit normal, in the axes of the frame.
     pub normal: Vec3,
-    /// How far the particle is below the surface, negative above it \[m\].
+    /// Depth of the particle below the surface, negative above it \[m\].
     pub depth: f32,
 }
 
-/// Where the path of particle `i` ends with respect to the surface of a solid, or to the plane that stopped it before.
+/// Contact at the end of the path of particle `i`, with the surface of a solid or with the plane that stopped the path before.
 pub fn nearest<Q: Solid>(solid: &Q, motion: &Motion, i: usize, [from, to]: [Vec3; 2]) -> Contact {
     let inverse = motion.axes.transpose();
     let start = inverse * (motion.turn * (from - motion.from));
     let end = inverse * (to - motion.to);
     let (mut distance, mut out) = near_one(solid, i, end);
-    let (way, size) = (start.distance_squared(end), solid.size());
-    let long = way > LONG * LONG * size * size;
+    let (length2, size) = (start.distance_squared(end), solid.size());
+    let long = length2 > LONG * LONG * size * size;
     if Q::CONVEX
         && long
-        && (distance < 0.0 || distance * distance < way)
+        && (distance < 0.0 || distance * distance < length2)
         && let Some(met) = sweep(solid, i, start, end)
     {
         (distance, out) = met;
@@ -305,7 +304,7 @@ pub fn nearest<Q: Solid>(solid: &Q, motion: &Motion, i: usize, [from, to]: [Vec3
     }
 }
 
-/// Which particles of a range touch a solid now; calls `found` for each, in order.
+/// Calls `found` for each particle of a range that touches a solid now, in order.
 pub fn find<Q: Solid>(
     solid: &Q,
     motion: &Motion,

@@ -37,7 +37,7 @@ fn size() -> impl Strategy<Value = f32> {
     0.02f32..1.0
 }
 
-/// How far outside of a shape a path ends after the contact, and how deep it was before on its way there.
+/// Distance of a path's end from a shape after the contact, outwards, and the greatest depth before on the path.
 fn after<Q: Solid>(solid: &Q, path: [Vec3; 2], distance: impl Fn(Vec3) -> f32) -> (f32, f32) {
     let contact = nearest(solid, &STILL, 0, path);
     let end = path[1] + contact.normal * contact.depth.max(0.0);
@@ -60,7 +60,7 @@ fn check<Q: Solid>(
     for travel in [20.0 / 960.0, 20.0 / 60.0, 20.0] {
         let (end, way) = after(solid, [from, from + direction * travel], &distance);
         prop_assert!(end > -1e-4, "ends at {end} after {travel} m");
-        // Half of a substep's way goes by unseen where it is short against the shape.
+        // Half of a substep's path goes by unseen where it is short against the shape.
         let unseen = (LONG * solid.size()).min(travel) + 1e-3;
         prop_assert!(way > -unseen, "was at {way} after {travel} m");
     }

@@ -10,7 +10,7 @@ use super::{
     lanes::{Factor, V3, each_window},
 };
 
-/// How far from the surface a particle on it may seem to be, as a part of the radius squared.
+/// Tolerance for the height of a particle on the surface, as a part of the radius squared.
 const ROUNDING: f32 = 1e-4;
 
 /// A sphere during one substep, in the frame of the particles.
@@ -30,9 +30,9 @@ pub struct MovingSphere {
 
 /// Keeps all free particles (`inv_mass` > 0) out of a sphere. Returns whether any touches.
 ///
-/// A particle that enters from outside is stopped at the tangent plane where it entered, however far it went: nothing
-/// tunnels at any speed. Along that plane it slides by a radius at most: further on, the sphere would have let it go.
-/// One that was inside before is pushed to the nearest point of the surface.
+/// A particle that enters from outside is stopped at the tangent plane where it entered, however far it went: nothing tunnels at any speed.
+/// Along that plane it slides by a radius at most: further on, the sphere would have let it go. A particle that was inside before is pushed
+/// to the nearest point of the surface.
 pub fn collide_all(
     level: Level,
     sphere: &MovingSphere,
@@ -81,7 +81,7 @@ fn collide_all_with<S: Simd>(
             let touching = free & (swept | inside | contacts.stays(simd, end, radius));
             if touching.any_true() {
                 any = true;
-                // Most are on the surface and go no long way: roots and quotients are found for the others alone.
+                // Most particles are on the surface and move little: roots and quotients are computed for the others alone.
                 let mut hit = start;
                 let above = touching & swept & start2.simd_gt(surely_outside);
                 if above.any_true() {

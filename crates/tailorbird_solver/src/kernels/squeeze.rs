@@ -1,8 +1,8 @@
-//! Particles at the ends of edges that are squeezed to much less than their length.
+//! Damping of tangles: of particles at edges that are squeezed to much less than their length.
 //!
-//! Nothing ordinary squeezes an edge that far: cloth buckles first. It happens where a sheet is wound up in itself, after pins that
-//! jumped or a step of a second, and rows and columns ask for opposite things. Such a knot would move for ever; with the motion
-//! of the whole in place of its own it mostly comes to rest, and often undoes itself.
+//! Nothing ordinary squeezes an edge that far: cloth buckles first. It happens where a sheet is wound up in itself, after pins that jumped
+//! or a step of a second, and rows and columns contradict each other. Such a tangle would move for ever; with the rigid motion of the whole
+//! in place of its own it mostly comes to rest, and often undoes itself.
 
 use bevy_math::Vec2;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
@@ -14,21 +14,21 @@ use super::{
     vectors::V3,
 };
 
-/// The least q/L² of an edge whose ends keep a motion of their own.
+/// Least q/L² of an edge whose ends keep a motion of their own.
 pub const LEAST: f32 = 0.5;
 
-/// What the edges along rows and columns look like.
+/// Survey of the edges along rows and columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Survey {
-    /// Whether any is squeezed; also where there are fewer columns than lanes.
+    /// True if any edge is squeezed.
     pub squeezed: bool,
-    /// The part of them that is longer than it should be [-].
+    /// Part of the edges that is longer than allowed [-].
     pub strained: f32,
-    /// How long the longest of those that are strained is, as a multiple of its length at rest [-]; 0 where none is.
+    /// Length of the longest strained edge, as a multiple of its length at rest [-]; 0 where none is strained.
     pub longest: f32,
 }
 
-/// Looks at all edges; those are strained that are longer than `allowed` times their length at rest.
+/// Surveys all edges; an edge is strained if it is longer than `allowed` times its length at rest.
 pub fn survey(level: Level, sheet: Sheet, spacing: Vec2, allowed: f32) -> Survey {
     sheet.check();
     dispatch!(level, simd => survey_with(simd, sheet, spacing, allowed))
@@ -85,14 +85,14 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, allowed: f32) -> S
     }
 }
 
-/// Gives free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns the motion of the whole, by
-/// moving `previous`. `spacing` is between columns and between rows \[m\].
+/// Gives free particles (`inv_mass` > 0) at the ends of squeezed edges along rows and columns the rigid motion of the whole, by moving
+/// `previous`. `spacing` is between columns and between rows \[m\].
 pub fn stop(level: Level, sheet: Sheet, previous: SharedPoints, spacing: Vec2, whole: RigidMotion) {
     sheet.check();
     let n = sheet.columns * sheet.rows;
-    assert_eq!(
-        [previous.x.len(), previous.y.len(), previous.z.len()],
-        [n; 3],
+    let lengths = [previous.x.len(), previous.y.len(), previous.z.len()];
+    assert!(
+        lengths.iter().all(|len| *len >= n),
         "one of each for {n} particles"
     );
     dispatch!(level, simd => stop_with(simd, sheet, previous, spacing, whole));
@@ -125,7 +125,7 @@ fn stop_with<S: Simd>(
     }
 }
 
-/// For the edges from `ends[0]` to `ends[1]`, each with the window added.
+/// Stops the ends of the edges from `ends[0]` to `ends[1]`, each with the window added.
 #[inline(always)]
 fn stop_ends<S: Simd>(
     simd: S,
@@ -176,8 +176,8 @@ mod tests {
                 for level in levels() {
                     let at = |i: usize| Vec3::new((i % columns) as f32, (i / columns) as f32, 0.0);
                     let mut position: Points = (0..columns * rows).map(at).collect();
-                    // Half way to the neighbour on the right, and out of the plane, so that the edge to the left is
-                    // longer and that to the right shorter.
+                    // Half way to the neighbour on the right, and out of the plane, so that the edge to the left is longer and that to the
+                    // right shorter.
                     let moved = at(squeezed) + Vec3::new(0.5, 0.0, 0.1);
                     position.set(squeezed, moved);
                     let mut previous: Points = position.iter().map(|p| p - Vec3::Z).collect();

@@ -1,11 +1,11 @@
-//! Heights over a rectangle, solid below.
+//! Height fields over a rectangle, solid below.
 
 use bevy_math::{UVec2, Vec2};
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, WIDEST, Window},
-    solid::{Near, Solid},
+    solid::{Distances, Solid},
 };
 
 /// Heights in a grid around the origin; each cell is two triangles.
@@ -17,14 +17,14 @@ pub struct Terrain<'a> {
     pub resolution: UVec2,
     /// Sides of a cell \[m\]; negative where it is mirrored.
     pub cell: Vec2,
-    /// What heights are multiplied by.
+    /// Factor of the heights [-].
     pub stretch: f32,
-    /// Distance that is kept \[m\].
+    /// Distance that is kept from the surface \[m\].
     pub margin: f32,
 }
 
 impl Terrain<'_> {
-    /// The height of a corner \[m\].
+    /// Height of a corner \[m\].
     #[inline(always)]
     fn height(&self, column: usize, row: usize) -> f32 {
         let i = row * self.resolution.x as usize + column;
@@ -40,9 +40,9 @@ impl Solid for Terrain<'_> {
         f32::MAX
     }
 
-    /// The distance from the plane of the triangle above or below.
+    /// Distance from the plane of the triangle above or below the point.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Near<S> {
+    fn distances<S: Simd>(&self, simd: S, _window: Window, p: V3<S>) -> Distances<S> {
         let one = S::f32s::splat(simd, 1.0);
         let zero = S::f32s::splat(simd, 0.0);
         let last = (self.resolution - UVec2::ONE).as_vec2();
@@ -55,7 +55,7 @@ impl Solid for Terrain<'_> {
         let column = x.max(zero).min(S::f32s::splat(simd, last.x - 1.0)).floor();
         let row = z.max(zero).min(S::f32s::splat(simd, last.y - 1.0)).floor();
         let (x, z) = (x - column, z - row);
-        // Whether the triangle has the corner at the lowest x and z, or the one at the highest, to itself.
+        // True for the triangle that has the corner at the lowest x and z to itself, false for that of the highest.
         let low = (x + z).simd_le(one);
         let own = low.select(zero, one);
         let mut heights = [[0.0; WIDEST]; 3];
@@ -76,7 +76,7 @@ impl Solid for Terrain<'_> {
         let a = inside.select(a, zero) * self.cell.x.recip();
         let b = inside.select(b, zero) * self.cell.y.recip();
         let length = (a * a + b * b + one).sqrt();
-        Near {
+        Distances {
             distance: (p.y - height) / length - self.margin,
             out: V3 {
                 x: zero - a,

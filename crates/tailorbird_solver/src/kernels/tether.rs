@@ -1,7 +1,7 @@
-//! Tethers: no particle gets further from a pin than the way along the sheet.
+//! Tethers: no particle gets further from a pin than the shortest path along the sheet.
 //!
-//! What a chain corrects in a pass is a Newton step, exact for small strains alone. A sheet that falls into two pins sees large
-//! ones there; tethers take them away at once, whatever the number of edges between (Kim, Chentanez, Müller 2012).
+//! The correction of a chain in a pass is a Newton step, exact for small strains alone. A sheet that falls into two pins has large strains
+//! there; tethers remove them at once, whatever the number of edges between (Kim, Chentanez, Müller 2012).
 
 use std::ops::Range;
 
@@ -11,40 +11,40 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::lanes::{Factor, Reading, V3, Window, each_window, lane_numbers};
 use super::{lattice::Sheet, recovery::Recovery};
 
-/// A pin, and how far each particle gets from it.
+/// A pin, and the largest distance of each particle from it.
 #[derive(Clone, Copy)]
 pub struct Tether<W> {
-    /// Where the pin is \[m\].
+    /// Position of the pin \[m\].
     pub anchor: Vec3,
-    /// Where it was at the start of the substep \[m\].
+    /// Position of the pin at the start of the substep \[m\].
     pub anchor_before: Vec3,
-    /// How much longer it is than it would be [-], as the pins are further apart than the sheet between them is long.
+    /// Factor of the lengths [-]: above 1 where pins are further apart than the sheet between them is long.
     pub longer: f32,
-    /// How far each particle gets from it.
+    /// Largest distance of each particle from the pin.
     pub ways: W,
 }
 
-/// The ways along a sheet that is flat at rest: straight lines.
+/// Distances along a sheet that is flat at rest: straight lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straight {
-    /// That of the pin.
+    /// Column of the pin.
     pub column: u32,
-    /// That of the pin.
+    /// Row of the pin.
     pub row: u32,
-    /// Between columns and between rows \[m\].
+    /// Spacing of columns and of rows \[m\].
     pub spacing: Vec2,
 }
 
 impl Straight {
-    /// How far it is to a particle \[m\].
+    /// Distance of a particle \[m\].
     pub fn length(self, column: u32, row: u32) -> f32 {
         let cells = [column.abs_diff(self.column), row.abs_diff(self.row)];
         (Vec2::from(cells.map(|n| n as f32)) * self.spacing).length()
     }
 }
 
-/// Pulls the free particles of a range back to where their tethers, `slack` times as long as at rest, are taut. The ways are
-/// lengths, one for each particle \[m\].
+/// Pulls the free particles of a range back to where their tethers, `slack` times as long as at rest, are taut. Tethers have one length for
+/// each particle \[m\].
 pub fn solve(
     level: Level,
     sheet: Sheet,
@@ -113,10 +113,10 @@ pub fn solve_straight(
     });
 }
 
-/// Pulls the particles of a window, from `first` on. `l2` tells the square of how far they get.
+/// Pulls the particles of a window, from `first` on. `l2` computes the squares of the largest distances.
 ///
-/// What is too far away already when the substep begins comes back no faster than the [`Recovery`] says, where there is one, and what
-/// is in contact moves along the surface alone.
+/// A particle that is too far away already when the substep begins comes back no faster than the [`Recovery`] allows, where there is one,
+/// and a particle in contact moves along the surface alone.
 #[inline(always)]
 fn pull<S: Simd, W: Copy>(
     simd: S,
@@ -131,7 +131,7 @@ fn pull<S: Simd, W: Copy>(
     let mut p = start;
     let mut taut = false;
     for tether in tethers.iter().flatten() {
-        // Nothing comes of the lanes beyond a short window, which are not stored.
+        // Lanes beyond a short window have no effect: they are not stored.
         let mut l2 = l2(tether.ways, tether.longer);
         let d = p - V3::splat(simd, tether.anchor);
         let q = d.dot(d);

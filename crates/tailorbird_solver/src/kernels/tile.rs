@@ -4,7 +4,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::lanes::{Shared, WIDEST};
 
-/// Up to as many rows as a vector has lanes, and where they lie as columns of a block.
+/// Up to as many rows as a vector has lanes, and their place as columns of a block.
 #[derive(Clone, Copy)]
 pub(super) struct Tile {
     pub sheet_offset: usize,
@@ -58,8 +58,8 @@ impl Tile {
     }
 }
 
-/// Transposes a square of as many lines as a vector has lanes. The places are those of the first line, and how far it is to the
-/// next.
+/// Transposes a square of as many lines as a vector has lanes. `at` and `to_at` are the places of the first line, `stride` and `to_stride`
+/// the steps to the next.
 #[inline(always)]
 fn transpose<S: Simd>(
     simd: S,
@@ -91,8 +91,7 @@ fn transpose<S: Simd>(
     }
 }
 
-/// Transposes a square of as many vectors as they have lanes: in each round, vector i and the one half a square further are
-/// interleaved.
+/// Transposes a square of as many vectors as they have lanes: in each round, vector i and vector i + N/2 are interleaved.
 #[inline(always)]
 fn interleaved<S: Simd, V: SimdBase<S>, const N: usize>(mut tile: [V; N]) -> [V; N] {
     let mut rounds = N;

@@ -22,7 +22,7 @@ impl<S: Simd> V3<S> {
         }
     }
 
-    /// This where `mask` holds, else `other`.
+    /// This vector where `mask` holds, else `other`.
     #[inline(always)]
     pub fn select(self, mask: S::mask32s, other: Self) -> Self {
         Self {

@@ -1,8 +1,10 @@
 //! Verlet integration: x' = x + (x − x⁻) d + a h².
 //!
-//! In `f32` the sum loses the low bits of a h², which is 10⁻⁵ of x and less, and since x − x⁻ is the velocity, what is lost once
-//! is missing ever after: a cloth in free fall would lag by millimetres in seconds. So what rounding takes from a displacement is
-//! kept and given to the next one (as Kahan does for sums).
+//! In `f32` the sum loses the low bits of a h², which is 10⁻⁵ of x and less, and since x − x⁻ is the velocity, a loss is permanent: a cloth
+//! in free fall would lag by millimetres in seconds. So the rounding error of a displacement is kept and added to the next one (as Kahan
+//! does for sums).
+
+use std::ops::Range;
 
 use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
@@ -15,7 +17,7 @@ use crate::points::Points;
 pub struct Verlet {
     /// Length of the substep, h \[s\].
     pub seconds: f32,
-    /// Length of the substep before \[s\]: x − x⁻ took this long. 0 for a cloth that has not moved yet.
+    /// Length of the substep before \[s\]: the time of x − x⁻. 0 for a cloth that has not moved yet.
     pub seconds_before: f32,
     /// Rate at which velocity decays [1/s].
     pub damping: f32,
@@ -24,8 +26,8 @@ pub struct Verlet {
 }
 
 impl Verlet {
-    /// The part of x − x⁻ that is kept, d: e^(−damping · h), so that the decay over a time does not depend on how many
-    /// substeps it is divided into; times h/h⁻ where the length changed.
+    /// Part of x − x⁻ that is kept, d: e^(−damping · h), so that the decay over a time does not depend on the number of substeps; times
+    /// h/h⁻ where the length changed.
     pub fn kept(&self) -> f32 {
         let same = self.seconds_before == self.seconds || self.seconds_before == 0.0;
         let ratio = if same {
@@ -36,14 +38,14 @@ impl Verlet {
         (-self.damping * self.seconds).exp() * ratio
     }
 
-    /// Moves free particles (`inv_mass` > 0) from `previous` over `position` to the new position, which replaces
+    /// Moves the free ones (`inv_mass` > 0) of some particles from `previous` over `position` to the new position, which replaces
     /// `position`; the old one becomes `previous`. Kinematic ones stay as they are.
     ///
-    /// `acceleration` comes in addition to gravity [m/s²]; none is 0. `lost` is what rounding took from the displacement of
-    /// each particle in the substep before \[m\], and is replaced by what it takes in this one.
+    /// `acceleration` is added to gravity [m/s²]; `None` is 0. `lost` is the rounding error of the displacement of each particle in the
+    /// substep before \[m\], and is replaced by that of this one.
     ///
     /// # Panics
-    /// Where the lengths differ.
+    /// When the lengths differ.
     pub fn step(
         &self,
         level: Level,
@@ -52,6 +54,7 @@ impl Verlet {
         lost: &mut Points,
         acceleration: Option<&Points>,
         inv_mass: &[f32],
+        particles: Range<usize>,
     ) {
         let n = inv_mass.len();
         assert!(
@@ -76,7 +79,8 @@ impl Verlet {
                 acceleration,
                 inv_mass: Reading(inv_mass),
             };
-            dispatch!(level, simd => step_axis(simd, axis, kept, fall, h2));
+            let particles = particles.clone();
+            dispatch!(level, simd => step_axis(simd, axis, kept, fall, h2, particles));
         }
     }
 }
@@ -92,13 +96,12 @@ struct Axis<'a> {
 }
 
 #[inline(always)]
-fn step_axis<S: Simd>(simd: S, axis: Axis, kept: f32, fall: f32, h2: f32) {
+fn step_axis<S: Simd>(simd: S, axis: Axis, kept: f32, fall: f32, h2: f32, particles: Range<usize>) {
     let zero = S::f32s::splat(simd, 0.0);
     let fall = S::f32s::splat(simd, fall);
-    let all = 0..axis.inv_mass.0.len();
     each_window(
         simd,
-        all.clone(),
+        particles,
         #[inline(always)]
         |window| {
             let now = axis.position.load_at(simd, window, 0);
@@ -159,6 +162,7 @@ mod tests {
             &mut lost,
             None,
             &[1.0],
+            0..1,
         );
         assert_eq!(position.get(0), Vec3::X * 1.25);
     }
@@ -184,6 +188,7 @@ mod tests {
                     &mut lost,
                     None,
                     &[1.0],
+                    0..1,
                 );
             }
             let (h, n) = (f64::from(seconds), f64::from(steps));

@@ -1,22 +1,22 @@
-//! Internal viscosity of a sheet, which quiets the simmer, and inertia in the same sweep over its rows.
+//! Internal viscosity of a sheet, which damps its trembling at rest, and inertia in the same sweep over its rows.
 //!
-//! One pass over rows, columns, diagonals and contacts never agrees with itself exactly, so that at rest the parts push against
-//! each other. Friction inside the fabric takes that away: neighbours along rows and columns exchange momentum in proportion
-//! to the difference of their velocities, Δv_i = w_i κ Σ_j (v_j − v_i), after the rigid motion of the whole was subtracted: a
-//! sheet that swings or turns as one is not slowed.
+//! One pass over rows, columns, diagonals and contacts never agrees with itself exactly, so that at rest the parts push against each other.
+//! Friction inside the fabric removes that motion: neighbours along rows and columns exchange momentum in proportion to the difference of
+//! their velocities, Δv_i = w_i κ Σ_j (v_j − v_i), after the rigid motion of the whole was subtracted: a sheet that swings or turns as one
+//! is not slowed.
 //!
-//! In a sheet of mass m₀ for each particle κ = c m₀/4, so that c is the part by which a particle comes nearer to the mean of
-//! its neighbours.
+//! In a sheet of mass m₀ for each particle κ = c m₀/4, so that c is the part by which a particle comes nearer to the mean of its
+//! neighbours.
 //!
-//! The velocities of three rows are kept; when those of row r + 1 are known, row r is moved ([`super::verlet`] tells how), so
-//! that all that a particle has is read and written once.
+//! The velocities of three rows are kept; when those of row r + 1 are known, row r is moved (see [`super::verlet`]), so that all values of
+//! a particle are read and written once.
 //!
 //! # Several threads
 //!
-//! Blocks of rows can be moved at the same time. Each needs the velocities of the row above it and the row below it, as they
-//! were before any block moved, so there are two phases: first [`Motion::save_row`] saves the velocities of the first and the
-//! last row of every block, and when all are saved, [`Motion::sweep`] moves each block, given those of its neighbours'. One
-//! block of all rows needs no first phase.
+//! Blocks of rows can be moved at the same time. Each needs the velocities of the row above it and the row below it, as they were before
+//! any block moved, so there are two phases: first [`SheetMotion::save_row`] saves the velocities of the first and the last row of every block,
+//! and when all are saved, [`SheetMotion::sweep`] moves each block, with the saved rows of its neighbours. One block of all rows needs no first
+//! phase.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -32,59 +32,59 @@ use super::{
 };
 use crate::points::Points;
 
-/// The largest `c`: a corner, which has a quarter of the mass and half of the neighbours, then comes to where its neighbours
-/// are, and no further.
+/// Largest `c`: a corner, which has a quarter of the mass and half of the neighbours, then gets the velocity of its neighbours, and no
+/// more.
 pub const LARGEST: f32 = 0.5;
 
-/// Rows of velocities that are kept at a time: three are needed.
+/// Number of rows of velocities that are kept at a time: three are needed.
 const KEPT: usize = 3;
 
-/// A substep of a sheet without its constraints.
+/// A substep of a sheet without its constraints: inertia and viscosity.
 #[derive(Clone, Copy)]
-pub struct Motion<'a> {
+pub struct SheetMotion<'a> {
     pub sheet: Sheet<'a>,
     /// Positions a substep before \[m\].
     pub previous: SharedPoints<'a>,
-    /// What rounding took from the displacement of the substep before \[m\].
+    /// Rounding error of the displacement of the substep before \[m\].
     pub lost: SharedPoints<'a>,
-    /// In addition to gravity [m/s²].
+    /// Acceleration in addition to gravity [m/s²].
     pub acceleration: Option<&'a Points>,
     /// κ \[kg\].
     pub conductance: f32,
-    /// What viscosity leaves alone.
+    /// Rigid motion of the whole, which viscosity does not slow.
     pub rigid: RigidMotion,
     pub verlet: Verlet,
 }
 
-/// The velocities of the rows beside a block, from [`Motion::save_row`]; none at the border of the sheet.
+/// Velocities of the rows above and below a block, from [`SheetMotion::save_row`]; `None` at the border of the sheet.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
     pub above: Option<&'a [f32]>,
     pub below: Option<&'a [f32]>,
 }
 
-impl Motion<'_> {
-    /// Makes sure that all particles are there.
+impl SheetMotion<'_> {
+    /// Checks that each array has one element for each particle.
     ///
     /// # Panics
-    /// Where they are not.
+    /// When one has not.
     fn check(&self) {
         self.sheet.check();
         let n = self.sheet.columns * self.sheet.rows;
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [n; 3];
+        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         let all = points(self.previous) && points(self.lost);
         assert!(
-            all && self.acceleration.is_none_or(|a| a.is_of(n)),
+            all && self.acceleration.is_none_or(|a| a.has(n)),
             "one of each for {n} particles"
         );
     }
 
-    /// How many numbers [`Self::save_row`] writes.
+    /// Number of values that [`Self::save_row`] writes.
     pub fn saved_len(&self) -> usize {
         3 * self.stride()
     }
 
-    /// From one axis of a row of velocities to the next.
+    /// Step from one axis of a row of velocities to the next.
     #[inline(always)]
     fn stride(&self) -> usize {
         self.sheet.columns + 2 * WIDEST
@@ -117,7 +117,7 @@ impl Motion<'_> {
         });
     }
 
-    /// The velocities of a row, rigid motion apart, times the length of the substep.
+    /// Computes the velocities of a row, less the rigid motion, times the length of the substep.
     #[inline(always)]
     fn velocities<S: Simd>(self, simd: S, r: usize, row: Row) {
         let at_origin: V3<S> = V3::splat(simd, self.rigid.at_origin());
@@ -144,7 +144,7 @@ impl Motion<'_> {
             at: (r % KEPT) * 3 * stride + WIDEST,
             stride,
         };
-        // Row r − 1 is in the place of row r + 2.
+        // Row r − 1 uses the scratch of row r + 2.
         if let Some(above) = beside.above {
             row_of(rows.start + KEPT - 1).copy_from(above);
         }
@@ -229,7 +229,7 @@ impl Row<'_> {
         self.load_from(simd, self.at + i)
     }
 
-    /// What lies to the left of each.
+    /// Loads the left neighbour of each vector.
     #[inline(always)]
     fn load_left<S: Simd>(self, simd: S, i: usize) -> V3<S> {
         self.load_from(simd, self.at + i - 1)
@@ -252,7 +252,7 @@ impl Row<'_> {
         self.scratch.store::<S>(at + 2 * self.stride, value.z);
     }
 
-    /// Makes what lies beside the first and the last of `len` vectors equal to them.
+    /// Copies the first and the last of `len` vectors to the places beside them.
     #[inline(always)]
     fn extend(self, len: usize) {
         for axis in 0..3 {
@@ -263,7 +263,7 @@ impl Row<'_> {
         }
     }
 
-    /// Copies a saved row, with what lies beside it.
+    /// Copies a saved row, with the places beside it.
     fn copy_from(self, saved: &[f32]) {
         for (i, value) in saved.iter().enumerate() {
             self.scratch.set(self.at - WIDEST + i, *value);

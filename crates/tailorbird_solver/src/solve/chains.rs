@@ -1,4 +1,4 @@
-//! The chain solver: what it does to a cloth in a substep. The page beside the kernels, `kernels/README.md`, explains it.
+//! The chain solver: a pass over the constraints of a cloth. The page beside the kernels, `kernels/README.md`, explains it.
 
 use fearless_simd::Level;
 
@@ -15,22 +15,26 @@ use crate::{
         spring::alpha_tilde,
         tether,
         verlet::Verlet,
-        viscosity::{self, Beside, Motion},
+        viscosity::{self, Beside, SheetMotion},
     },
     particles::{Input, Particles, Scratch, State},
     substep::Substep,
     tethers::{Anchors, Tethers},
-    topology::{Topology, lattice::Lattice},
+    topology::{
+        Topology,
+        lattice::Lattice,
+        layout::{Layout, SheetLayout},
+    },
     workers::Workers,
 };
 
-/// How much longer than at rest a tether is [-]: what is left to the chains.
+/// Factor of the lengths of tethers [-]: the rest is left to the chains.
 const SLACK: f32 = 1.001;
 
-/// The same where the ways to the pins run over a curved surface and are less certain.
+/// The same factor for a curved surface, on which distances from pins are less certain.
 const CURVED_SLACK: f32 = 1.005;
 
-/// How many times the strain of a sheet that hangs by its own weight a tether of a fabric that stretches allows [-].
+/// Strain that a tether of a stretching fabric allows, as a multiple of that of a sheet that hangs by its own weight [-].
 const STRETCH_ROOM: f32 = 20.0;
 
 /// One pass over the constraints.
@@ -43,12 +47,12 @@ pub struct Pass<'a> {
     pub seconds: f32,
     /// Strength of gravity [m/s²].
     pub gravity: f32,
-    /// Which direction comes first alternates with it.
+    /// Number of the pass: the order of rows and columns alternates with it.
     pub number: u32,
 }
 
 impl<'a> Pass<'a> {
-    /// The pass `k` of a substep.
+    /// Pass `k` of a substep.
     pub fn of(
         substep: &Substep<'a>,
         topology: &'a Topology,
@@ -73,13 +77,14 @@ impl Pass<'_> {
         alpha_tilde(compliance, self.seconds)
     }
 
-    /// The lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal density [kg/m²].
+    /// Stiffness of the lines at distance `across` from each other, whose particles are `along` apart \[m\], of a sheet of this areal
+    /// density [kg/m²].
     fn line(&self, compliance: f32, along: f32, across: f32, density: f32) -> LineStiffness {
         let bend = self.material.bend_compliance * along * along * along / across;
         LineStiffness {
             rest_length: along,
             stretch: self.alpha_tilde(compliance * along / across),
-            // What is curved at rest has hinges.
+            // A sheet that is curved at rest has hinges.
             bend: if self.topology.flat {
                 self.alpha_tilde(bend)
             } else {
@@ -89,18 +94,17 @@ impl Pass<'_> {
         }
     }
 
-    /// How large the cloth is \[m\].
+    /// Size of the cloth \[m\].
     pub fn size(&self) -> f32 {
-        match (&self.topology.lattice, &self.topology.fabric) {
-            (Some(lattice), _) => {
+        match &self.topology.layout {
+            Layout::Sheet(SheetLayout { lattice, .. }) => {
                 lattice.rows.max(lattice.columns) as f32 * lattice.spacing.max_element()
             }
-            (None, Some(fabric)) => fabric.size(),
-            (None, None) => 0.0,
+            Layout::Mesh(fabric) => fabric.size(),
         }
     }
 
-    /// How much longer than at rest tethers are [-].
+    /// Factor of the lengths of tethers [-].
     pub fn slack(&self) -> f32 {
         let material = self.material;
         let size = self.size();
@@ -112,11 +116,11 @@ impl Pass<'_> {
         let weight = material.areal_density * self.gravity.max(1.0) * size;
         let compliance = material.warp_compliance.max(material.weft_compliance);
         let room = STRETCH_ROOM * compliance * weight;
-        // Not finite or negative: the material is reported elsewhere.
+        // Not for a stretch that is not finite or negative: the material is reported elsewhere.
         slack + if room > 0.0 { room.min(1e6) } else { 0.0 }
     }
 
-    /// The particles as columns and rows, and where they were at the start of the substep.
+    /// Particles as columns and rows, and their positions at the start of the substep.
     fn sheet<'a>(
         &self,
         particles: &'a mut Particles,
@@ -155,14 +159,14 @@ impl Pass<'_> {
         self.number % 2 == 1
     }
 
-    /// Tethers, bending, shear, then whole lines: rows and columns, and the other way round in every second pass.
+    /// Solves tethers, bending, shear, then whole lines: rows and columns, and in every second pass columns first.
     pub fn solve(&self, tethers: &Tethers, particles: &mut Particles) {
         let topology = self.topology;
         if particles.len() != topology.particles() || particles.is_empty() {
             return;
         }
         let slack = self.slack() * (1.0 + particles.state.grant.largest());
-        // A hand does not pull the cloth further from its pins than it reaches.
+        // A hand does not pull the cloth further from its pins than the tethers reach.
         if let Some((held, _)) = particles.input.held.in_hand() {
             let i = held as usize;
             let position = &mut particles.state.position;
@@ -181,7 +185,7 @@ impl Pass<'_> {
             &particles.state.previous_position,
         ) {
             Anchors::Straight(tethers) => {
-                if let Some(lattice) = &topology.lattice {
+                if let Some(lattice) = topology.lattice() {
                     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
                     let effort = particles.state.effort;
                     let (sheet, start) = self.sheet(particles, [columns, rows]);
@@ -205,10 +209,9 @@ impl Pass<'_> {
             coupling.held -= coupling.normal.dot(place);
         }
         self.bend(&topology.hinges, particles);
-        if let Some(lattice) = &topology.lattice {
-            self.solve_lattice(lattice, particles);
-        } else if let Some(fabric) = &topology.fabric {
-            self.solve_fabric(fabric, particles);
+        match &topology.layout {
+            Layout::Sheet(sheet) => self.solve_lattice(&sheet.lattice, particles),
+            Layout::Mesh(fabric) => self.solve_fabric(fabric, particles),
         }
     }
 
@@ -253,21 +256,21 @@ impl Pass<'_> {
     }
 }
 
-/// Internal viscosity, and inertia in the same sweep where there is one. Returns whether the particles moved.
+/// Internal viscosity, and inertia in the same sweep where there is one. Returns how many particles moved: the first ones.
 pub fn integrate(
     substep: &Substep,
     topology: &Topology,
     material: &Coefficients,
     verlet: Verlet,
     particles: &mut Particles,
-) -> bool {
+) -> usize {
     let seconds_before = particles.state.substep_seconds;
     let damped = material.viscosity > 0.0
         && seconds_before > 0.0
         && !particles.is_empty()
         && particles.len() == topology.particles();
     if !damped {
-        return false;
+        return 0;
     }
     let density = particles.input.areal_density;
     let Particles {
@@ -291,49 +294,51 @@ pub fn integrate(
         ..
     } = particles;
     let rigid = RigidMotion::fit(mass, position, previous_position);
-    if let Some(lattice) = &topology.lattice {
-        let area = lattice.spacing.x * lattice.spacing.y;
-        // ν = c L²/(4 h) on a square grid.
-        let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
-        let motion = Motion {
-            sheet: Sheet {
-                columns: lattice.columns as usize,
-                rows: lattice.rows as usize,
-                position: SharedPoints::new(position),
-                inv_mass: Shared::new(inv_mass),
-                normal: None,
-                pressed: None,
-                give: Give::default(),
-                lengths: None,
-            },
-            previous: SharedPoints::new(previous_position),
-            lost: SharedPoints::new(lost_displacement),
-            acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
-            conductance: 0.25 * c * density * area,
-            rigid,
-            verlet,
-        };
-        sweep(substep, motion, scratch);
-        return true;
+    match &topology.layout {
+        Layout::Sheet(SheetLayout { lattice, .. }) => {
+            let area = lattice.spacing.x * lattice.spacing.y;
+            // ν = c L²/(4 h) on a square grid.
+            let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
+            let motion = SheetMotion {
+                sheet: Sheet {
+                    columns: lattice.columns as usize,
+                    rows: lattice.rows as usize,
+                    position: SharedPoints::new(position),
+                    inv_mass: Shared::new(inv_mass),
+                    normal: None,
+                    pressed: None,
+                    give: Give::default(),
+                    lengths: None,
+                },
+                previous: SharedPoints::new(previous_position),
+                lost: SharedPoints::new(lost_displacement),
+                acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
+                conductance: 0.25 * c * density * area,
+                rigid,
+                verlet,
+            };
+            sweep(substep, motion, scratch);
+            motion.sheet.columns * motion.sheet.rows
+        }
+        Layout::Mesh(fabric) => {
+            let viscosity = material.viscosity * seconds_before;
+            mesh::exchange(
+                fabric,
+                position,
+                previous_position,
+                lost_displacement,
+                inv_mass,
+                rigid,
+                viscosity,
+                density,
+            );
+            0
+        }
     }
-    if let Some(fabric) = &topology.fabric {
-        let viscosity = material.viscosity * seconds_before;
-        mesh::exchange(
-            fabric,
-            position,
-            previous_position,
-            lost_displacement,
-            inv_mass,
-            rigid,
-            viscosity,
-            density,
-        );
-    }
-    false
 }
 
 /// Moves a sheet, in blocks of rows, one for each part of the workers.
-fn sweep(substep: &Substep, motion: Motion, scratch: &mut Vec<f32>) {
+fn sweep(substep: &Substep, motion: SheetMotion, scratch: &mut Vec<f32>) {
     let (level, workers) = (substep.level, substep.workers);
     let rows = motion.sheet.rows;
     let part = workers.part(rows);

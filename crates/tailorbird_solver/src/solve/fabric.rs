@@ -1,4 +1,4 @@
-//! What the chain solver does to a triangle mesh that is no grid.
+//! The chain solver for a triangle mesh that is no grid.
 
 use super::chains::Pass;
 use crate::{
@@ -12,14 +12,14 @@ use crate::{
     topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
 
-/// How many times a substep solves each constraint of a mesh; so much softer each has to be.
+/// Number of times that a substep solves each constraint of a mesh; each must be softer by this factor.
 const TIMES: f32 = 2.0;
 
 impl Pass<'_> {
-    /// Shear, the chains of all passes, shear, the chains in the other order.
+    /// Solves shear, the chains of all passes, shear, the chains in the other order.
     ///
-    /// In one order alone, what several passes do one after the other turns some waves round: a mesh that nobody touches would gain energy.
-    /// There and back it is symmetric, and takes from all of them.
+    /// In one order alone, successive passes rotate some waves: a mesh that nobody touches would gain energy. Both orders together are
+    /// symmetric, and take energy from all waves.
     pub fn solve_fabric(&self, fabric: &Fabric, particles: &mut Particles) {
         let passes = fabric.chains().passes.len();
         self.solve_shear(fabric, particles);
@@ -82,7 +82,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Bending of what is no flat lattice.
+    /// Solves the bending of a cloth that is no flat lattice.
     pub fn bend(&self, hinges: &HingeConstraints, particles: &mut Particles) {
         if !hinges.is_empty() {
             with_packed(

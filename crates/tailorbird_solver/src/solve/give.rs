@@ -1,4 +1,4 @@
-//! What a cloth gives way to that is asked for more than its fabric has; [`effort`] tells when.
+//! Give of a cloth that is asked for more than its fabric has; [`effort`] tells when.
 
 use super::chains::Pass;
 use crate::{
@@ -10,48 +10,48 @@ use crate::{
     },
 };
 
-/// No cloth counts as smaller than this \[m\].
+/// Least size of a cloth \[m\].
 const SMALLEST: f32 = 1e-3;
 
-/// How fast what is farther from a pin than it reaches comes back while the cloth is strained, at least [m/s].
+/// Least speed at which a particle beyond the reach of its tether comes back while the cloth is strained [m/s].
 const TETHER_SPEED: f32 = 0.05;
 
-/// And at which rate [1/s].
+/// Rate at which it comes back [1/s].
 const TETHER_RATE: f32 = 0.5;
 
-/// How many times as fast it does so while the cloth settles [-].
-const SETTLING: f32 = 30.0;
+/// Factor of both while the cloth comes to rest [-].
+const RECOVERED: f32 = 30.0;
 
-/// How soft strained lines get.
+/// Softness of strained lines.
 struct Softness {
-    /// The largest compliance, relative to what their particles resist with [-].
+    /// Largest compliance, relative to the inverse masses of the particles [-].
     most: f32,
-    /// κ of what hangs, times this, is the strain that it may cost [-].
+    /// Ratio to κ of a hanging cloth of the strain that the softness may cost [-].
     load: f32,
-    /// They are that soft where so much is granted [-].
+    /// Granted strain at which lines are that soft [-].
     granted: f32,
 }
 
-/// What a body pushes out of the plane of a sheet contradicts rows and columns the more the farther it does.
+/// Softness of a sheet: a body that pushes it out of its plane contradicts rows and columns the more the farther it does.
 const SHEET: Softness = Softness {
     most: 0.15,
     load: 0.03,
     granted: 0.2,
 };
 
-/// The chains of a mesh end anywhere, and contradict one another wherever more is asked for than they have.
+/// Softness of a mesh: its chains end anywhere, and contradict one another wherever more is asked for than they have.
 const MESH: Softness = Softness {
     most: 1.0,
     load: 0.015,
     granted: 0.02,
 };
 
-/// What strained lines pull with at most where something touches the cloth, κ = 4 w |μ| [-].
+/// Largest pull of strained lines where a collider touches the cloth, κ = 4 w |μ| [-].
 const PULL: f32 = 5.0;
 
 impl Pass<'_> {
-    /// How what is farther from a pin than it reaches comes back; none where it does so at once. `fresh` is whether some
-    /// of the pins are new.
+    /// Bounded return of particles beyond the reach of their tethers; `None` where they come back at once. `fresh` is true if some of the
+    /// pins are new.
     pub fn recovery<'b>(
         &self,
         effort: Effort,
@@ -59,15 +59,15 @@ impl Pass<'_> {
         start: SharedPoints<'b>,
     ) -> Option<Recovery<'b>> {
         let size = self.size().max(SMALLEST);
-        let times = if effort.recovers { 1.0 } else { SETTLING };
-        (effort.settles() || fresh).then(|| Recovery {
+        let times = if effort.recovers { 1.0 } else { RECOVERED };
+        (effort.is_slowed() || fresh).then(|| Recovery {
             start,
             least: 2.0 * times * TETHER_SPEED * self.seconds / size,
             part: (times * TETHER_RATE * self.seconds).min(1.0),
         })
     }
 
-    /// How far lines give way, where so much strain is granted to the cloth.
+    /// Limits of compliance and tension of lines, for a cloth with so much granted strain.
     pub fn give(&self, effort: Effort, granted: f32, touches: bool) -> Give {
         if !effort.recovers {
             return Give::default();
@@ -79,17 +79,17 @@ impl Pass<'_> {
         }
     }
 
-    /// The compliance of strained lines, relative to what their particles resist with [-].
+    /// Compliance of strained lines, relative to the inverse masses of their particles [-].
     ///
-    /// The softer they are, the more evenly is shared what has not been granted: a chain pulls with all its tension at what bears less. The
-    /// own weight stretches a cloth by no more than a part of what counts as strained.
+    /// The softer the lines are, the more evenly the strain beyond the grant is shared: a chain pulls with all its tension at lines that
+    /// bear less. The cloth's own weight stretches it by no more than a part of [`STRAIN`](crate::effort::STRAIN).
     fn compliance(&self, granted: f32) -> f32 {
         let count = (self.topology.particles() as f32).sqrt().max(1.0);
         let size = self.size().max(SMALLEST);
         let spacing = size / count;
-        // κ = 4 h² T/(m L) of what hangs by its upper edge.
+        // κ = 4 h² T/(m L) of a cloth that hangs by its upper edge.
         let kappa = 4.0 * self.seconds * self.seconds * self.gravity.max(1.0) * size;
-        let softness = if self.topology.fabric.is_some() {
+        let softness = if self.topology.fabric().is_some() {
             MESH
         } else {
             SHEET

@@ -1,11 +1,11 @@
-//! What a substep does to a cloth: inertia, then constraints, then what is tangled.
+//! Stages of a substep within the cloth: inertia, then constraints, then damping of tangles.
 
-mod calm;
 mod chains;
 mod classic;
 mod fabric;
 mod give;
 mod slowing;
+mod tangles;
 
 use crate::{
     cloth::Cloth,
@@ -21,7 +21,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
-    particles.calm_strained(seconds, substep.out());
+    particles.damp_strained(seconds, substep.out());
     let verlet = Verlet {
         seconds,
         seconds_before: particles.state.substep_seconds,
@@ -32,8 +32,10 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
         },
         gravity: cloth.frame.vector_to_frame(substep.gravity),
     };
-    let moved = cloth.method == Method::Lines
-        && chains::integrate(substep, topology, material, verlet, particles);
+    let moved = match cloth.method {
+        Method::Lines => chains::integrate(substep, topology, material, verlet, particles),
+        Method::Springs => 0,
+    };
     let Particles {
         state:
             State {
@@ -51,7 +53,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             },
         ..
     } = particles;
-    if !moved {
+    if moved < inv_mass.len() {
         verlet.step(
             substep.level,
             position,
@@ -59,6 +61,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
             lost_displacement,
             (!acceleration.is_empty()).then_some(&*acceleration),
             inv_mass,
+            moved..inv_mass.len(),
         );
     }
     for (pin, place) in held.pins() {
@@ -70,7 +73,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
     particles.state.substep_seconds = seconds;
 }
 
-/// Holds the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
+/// Solves the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
 pub fn solve(substep: &Substep, cloth: &mut Cloth) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     if let Some(forces) = &mut cloth.forces {
@@ -85,7 +88,7 @@ pub fn solve(substep: &Substep, cloth: &mut Cloth) {
                 pass.solve(cloth.tethers, cloth.particles);
             }
             let size = chains::Pass::of(substep, topology, material, 0).size();
-            (cloth.particles).slow_strained(substep.seconds, [substep.out(), size]);
+            (cloth.particles).limit_strained(substep.seconds, [substep.out(), size]);
         }
         Method::Springs => {
             classic::solve(substep, topology, material, cloth.particles);
@@ -100,7 +103,7 @@ pub fn solve(substep: &Substep, cloth: &mut Cloth) {
     }
 }
 
-/// Damps what is tangled in itself, after the last substep.
+/// Damps tangles, after the last substep.
 pub fn calm(substep: &Substep, cloth: &mut Cloth) {
     let solves = cloth.method == Method::Lines && substep.iterations > 0;
     if solves && substep.left() == 1 {
@@ -108,7 +111,7 @@ pub fn calm(substep: &Substep, cloth: &mut Cloth) {
         let longest = pass.slack() + effort::STRAIN;
         let seconds = substep.seconds * substep.count as f32;
         let (level, particles) = (substep.level, &mut *cloth.particles);
-        calm::calm(level, cloth.topology, longest, seconds, particles);
+        tangles::damp(level, cloth.topology, longest, seconds, particles);
         cloth.particles.disturb(cloth.topology);
     }
 }

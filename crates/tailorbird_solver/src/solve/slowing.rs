@@ -1,4 +1,4 @@
-//! How what is strained is slowed.
+//! Slowing of a strained cloth.
 
 use bevy_math::Vec3;
 
@@ -8,36 +8,36 @@ use crate::{
     topology::Topology,
 };
 
-/// What is farther apart than the cloth is large, times this, comes back faster [-]: no hand or post draws it out so far.
+/// Extent of a cloth, as a multiple of its size, beyond which it comes back faster [-]: no hand or post draws it out so far.
 const FAR: f32 = 1.5;
 
-/// The rate at which what is farther apart than that comes back [1/s].
+/// Rate at which a cloth beyond that extent comes back [1/s].
 const RATE: f32 = 8.0;
 
-/// Rate at which the motion of what is strained decays, as seen from what holds it [1/s].
-const CALMED: f32 = 3.0;
+/// Rate at which the motion of a strained cloth decays, as seen from its holders [1/s].
+const DECAY: f32 = 3.0;
 
-/// The least part that is left in a lull of the speed by which it comes out of what it is in [-].
+/// Least part, in a lull, of the speed at which a cloth comes out of a collider [-].
 const LEAST_OUT: f32 = 0.1;
 
-/// The longest side of a box around points \[m\]; 0 where there is none.
+/// Longest side of a box around points \[m\]; 0 without points.
 fn extent(points: impl Iterator<Item = Vec3>) -> f32 {
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let (low, high) = points.fold(none, |(low, high), p| (low.min(p), high.max(p)));
     (high - low).max_element().max(0.0)
 }
 
-/// What the motion of a strained cloth is seen from.
+/// Motion of the holders and colliders of a strained cloth, from which its own motion is seen.
 struct Led {
-    /// How most of what holds it moved since the start of the substep, and the whole where nothing does \[m\].
-    way: Vec3,
-    /// How far what holds or touches it moved \[m\].
+    /// Mean displacement of most holders since the start of the substep; that of the whole cloth without holders \[m\].
+    displacement: Vec3,
+    /// Displacement of holders and colliders that bounds that of the cloth \[m\].
     reach: f32,
-    /// How far what moved farthest of all that holds or touches it did \[m\].
+    /// Largest displacement of a holder or collider \[m\].
     farthest: f32,
-    /// How far what holds it is apart \[m\].
+    /// Extent of the held particles \[m\].
     apart: f32,
-    /// How many particles are held.
+    /// Number of held particles.
     held: usize,
 }
 
@@ -56,17 +56,17 @@ impl Particles {
             .iter()
             .enumerate()
             .filter(|(_, w)| **w == 0.0);
-        let ways = (held.clone())
+        let displacements = (held.clone())
             .map(|(i, _)| self.state.position.get(i) - self.state.previous_position.get(i));
         lengths.clear();
-        lengths.extend(ways.clone().map(Vec3::length));
+        lengths.extend(displacements.clone().map(Vec3::length));
         let farthest = lengths.iter().copied().fold(0.0, f32::max);
         let touching = if self.state.touch.any {
             self.state.touch.swept
         } else {
             0.0
         };
-        // It comes out of what it is in, and where it cannot it comes to rest.
+        // The cloth comes out of the collider that it is in, and where it cannot it comes to rest.
         let swept = if self.state.touch.any && self.state.touch.overlaps {
             touching + out * self.state.effort.lulled().max(LEAST_OUT)
         } else {
@@ -79,8 +79,8 @@ impl Particles {
                 &self.state.previous_position,
             );
             return Led {
-                way: whole.displacement,
-                // The ground stops what falls.
+                displacement: whole.displacement,
+                // The ground stops a falling cloth.
                 reach: whole.displacement.length() + swept,
                 farthest: touching,
                 apart: 0.0,
@@ -88,13 +88,13 @@ impl Particles {
             };
         };
         let (_, &mut middle, _) = lengths.select_nth_unstable_by(middle, f32::total_cmp);
-        // What jumps away from the others leads nobody.
-        let most = ways.filter(|way| way.length() <= 1.5 * middle);
-        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), way| {
-            (sum + way, count + 1.0)
+        // A holder that jumps away from the others leads nobody.
+        let most = displacements.filter(|displacement| displacement.length() <= 1.5 * middle);
+        let (sum, count) = most.fold((Vec3::ZERO, 0.0), |(sum, count), displacement| {
+            (sum + displacement, count + 1.0)
         });
         Led {
-            way: sum / f32::max(count, 1.0),
+            displacement: sum / f32::max(count, 1.0),
             reach: middle.max(swept),
             farthest: farthest.max(touching),
             apart: extent(held.map(|(i, _)| self.state.position.get(i))),
@@ -102,39 +102,43 @@ impl Particles {
         }
     }
 
-    /// Slows what is strained, as seen from what holds it, during a substep. `out` is how far colliders push \[m\].
-    pub fn calm_strained(&mut self, seconds: f32, out: f32) {
+    /// Slows a strained cloth, as seen from its holders, during a substep. `out` is the distance by which colliders push \[m\].
+    pub fn damp_strained(&mut self, seconds: f32, out: f32) {
         if !self.state.effort.recovers {
             return;
         }
-        let Led { way, reach, .. } = self.led(out);
+        let Led {
+            displacement,
+            reach,
+            ..
+        } = self.led(out);
         let most = (self.state.effort.speed() + self.state.effort.driven) * seconds + reach;
-        let part = 1.0 - (-CALMED * seconds).exp();
+        let part = 1.0 - (-DECAY * seconds).exp();
         for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
                 let before = self.state.previous_position.get(i);
-                let moved = self.state.position.get(i) - before - way;
+                let moved = self.state.position.get(i) - before - displacement;
                 let kept = ((1.0 - part) * moved).clamp_length_max(most);
                 self.state.previous_position.set(i, before + moved - kept);
             }
         }
     }
 
-    /// Takes back what constraints moved what is strained by, beyond what it may move in a substep. `out` is how far colliders push, and `size`
-    /// how large the cloth is \[m\].
-    pub fn slow_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
+    /// Takes back displacements by constraints of a strained cloth that are beyond the bound of a substep. `out` is the distance by which
+    /// colliders push, and `size` the size of the cloth \[m\].
+    pub fn limit_strained(&mut self, seconds: f32, [out, size]: [f32; 2]) {
         if self.state.touch.any {
             let speed = self.state.touch.swept / seconds;
             self.state.effort.struck = self.state.effort.struck.max(speed);
         }
-        if !self.state.effort.settles() {
+        if !self.state.effort.is_slowed() {
             return;
         }
         let led = self.led(out);
-        let around = [led.held, self.state.touch.colliders];
+        let contacts = [led.held, self.state.touch.colliders];
         let driven = self.state.effort.driven;
         let fastest = driven.max(led.farthest / seconds);
-        self.state.effort.pass(seconds, fastest, around);
+        self.state.effort.pass(seconds, fastest, contacts);
         let mut speed = 2.0 * self.state.effort.speed() + driven;
         if !self.state.touch.any {
             let far = f32::max(FAR * size, led.apart + size);
@@ -143,7 +147,7 @@ impl Particles {
         let most = speed * seconds + led.reach;
         for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
-                let start = self.state.previous_position.get(i) + led.way;
+                let start = self.state.previous_position.get(i) + led.displacement;
                 let moved = self.state.position.get(i) - start;
                 if moved.length_squared() > most * most {
                     self.state
@@ -154,8 +158,8 @@ impl Particles {
         }
     }
 
-    /// A sheet in a perfect plane that something presses within that plane would stand as a board: pushes its particles out of it, each
-    /// by its own part of 10 µm.
+    /// Disturbs a sheet in a perfect plane that a collider presses within that plane, which would stand as a board: pushes its particles
+    /// out of it, each by its own part of 10 µm.
     pub fn disturb(&mut self, topology: &Topology) {
         const FLAT: f32 = 1e-4;
         const PUSH: f32 = 1e-5;

@@ -15,10 +15,11 @@ mod layout;
 
 use cover::{Cover, cover};
 
-/// Chains solved side by side.
+/// Number of chains solved side by side.
 pub const LANES: usize = 16;
 
-/// After so many passes what is left is taken edge by edge: looking for chains once more takes as long as it did at first.
+/// Number of passes after which the edges that are left are taken one by one: looking for chains once more takes as long as it did at
+/// first.
 const MOST_COVERS: usize = 64;
 
 /// In [`Chains::particle`]: no particle.
@@ -30,51 +31,50 @@ pub const OPEN: u32 = u32::MAX;
 /// Up to [`LANES`] chains of similar length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainBatch {
-    /// Which slots they take: [`LANES`] for each link.
+    /// Range of slots: [`LANES`] for each link.
     pub slots: Range<usize>,
-    /// Particles along the longest of them, at least 2.
+    /// Particles along the longest chain, at least 2.
     pub length: usize,
-    /// For each lane the edge that closes a ring, whose last particle is its first one, or [`OPEN`]; none where all are open.
+    /// For each lane the edge that closes a ring, whose last particle is its first one, or [`OPEN`]; `None` where all chains are open.
     pub closing: Option<[u32; LANES]>,
 }
 
 /// Batches that share no particle and can be solved in any order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChainPass {
-    /// What the edges follow: the warp or the weft.
+    /// Threads that the edges follow: the warp or the weft.
     pub family: EdgeFamily,
-    /// Which batches.
+    /// Range of batches.
     pub batches: Range<usize>,
 }
 
-/// The edges along warp and weft as chains, every edge in one of them; what goes round is a ring, whose last link is its first particle once
+/// Chains of the edges along warp and weft, every edge in one of them. A closed chain is a ring: its last link is its first particle once
 /// more.
 ///
 /// Slot `batch.slots.start + k * LANES + lane` is the `k`-th link of a chain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chains {
-    /// Solved one after the other. First all of the family whose chains are longer; of each family the longest
-    /// chains first.
+    /// Passes, solved one after the other: first all of the family whose chains are longer; of each family the longest chains first.
     pub passes: Vec<ChainPass>,
-    /// The batches of all passes.
+    /// Batches of all passes.
     pub batches: Vec<ChainBatch>,
-    /// For each slot its particle, [`NONE`] where the chain has ended or the lane is empty.
+    /// Particle of each slot, [`NONE`] where the chain has ended or the lane is empty.
     pub particle: Vec<u32>,
-    /// For each slot the rest length of the edge to the next link \[m\]; 0 where there is none.
+    /// Rest length of the edge from each slot to the next link \[m\]; 0 without an edge.
     pub rest_length: Vec<f32>,
-    /// For each slot the [`Weave::scale`] of that edge \[-\]; 0 where there is none.
+    /// [`Weave::scale`] of that edge \[-\]; 0 without an edge.
     pub scale: Vec<f32>,
-    /// For each slot the [`Weave::along_warp`] of that edge \[-\]; 0 where there is none.
+    /// [`Weave::along_warp`] of that edge \[-\]; 0 without an edge.
     pub along_warp: Vec<f32>,
 }
 
 impl Chains {
-    /// Covers the edges along warp and weft with chains, and numbers the particles so that those of the first pass lie
-    /// one after the other.
+    /// Covers the edges along warp and weft with chains, and renumbers the particles so that the particles of the first pass lie one after
+    /// the other.
     ///
-    /// Returns the chains, in *storage* numbers, and for each of those the given number. In each batch of the first pass
-    /// storage numbers run along the lanes, then to the next link; adjacent lanes and adjacent batches lie side by side
-    /// on the mesh. `rest_positions` \[m\] and `weave` are in the given numbers.
+    /// Returns the chains, in storage order, and the original index of each particle in storage order. In each batch of the first pass
+    /// storage order runs along the lanes, then to the next link; adjacent lanes and adjacent batches lie side by side on the mesh.
+    /// `rest_positions` \[m\] and `weave` are in original order.
     pub fn build(rest_positions: &[Vec3], weave: &Weave) -> (Self, Vec<u32>) {
         let mut families = [EdgeFamily::Warp, EdgeFamily::Weft]
             .map(|family| (family, covers(rest_positions, weave, family)));
@@ -105,7 +105,7 @@ impl Chains {
         (chains, order)
     }
 
-    /// What they take on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.passes)
             + heap(&self.batches)
@@ -115,13 +115,13 @@ impl Chains {
             + heap(&self.along_warp)
     }
 
-    /// The ends and rest lengths \[m\] of all edges.
+    /// Ends and rest lengths \[m\] of all edges.
     pub fn edges(&self) -> impl Iterator<Item = ([u32; 2], f32)> + '_ {
         self.slots()
             .map(|(slot, ends)| (ends, self.rest_length[slot]))
     }
 
-    /// The slots that have an edge, with its ends.
+    /// Slots that have an edge, with its ends.
     pub fn slots(&self) -> impl Iterator<Item = (usize, [u32; 2])> + '_ {
         let next = self.particle.get(LANES..).unwrap_or_default();
         let ends = self.particle.iter().zip(next).zip(&self.rest_length);
@@ -134,7 +134,7 @@ impl Chains {
         &mut self,
         family: EdgeFamily,
         cover: &Cover,
-        batches: &[layout::Batch],
+        batches: &[layout::LaneChains],
         number: &[u32],
         rest_positions: &[Vec3],
         weave: &Weave,
@@ -176,7 +176,7 @@ impl Chains {
     }
 }
 
-/// For each given number its storage number, from the `order` that [`Chains::build`] returns.
+/// Storage index of each particle in original order, from the `order` that [`Chains::build`] returns.
 pub fn inverse(order: &[u32]) -> Vec<u32> {
     let mut number = vec![0; order.len()];
     for (new, &old) in order.iter().enumerate() {
@@ -195,7 +195,7 @@ fn covers(rest_positions: &[Vec3], weave: &Weave, family: EdgeFamily) -> Vec<Cov
     while !edges.is_empty() {
         let pass = covers.len() as u32 + 1;
         if covers.len() == MOST_COVERS {
-            // The spokes of a hub, of which each pass takes one.
+            // The edges of a fan at one particle, of which each pass takes one.
             let spokes: Vec<[u32; 2]> = edges.iter().map(|e| weave.ends[*e as usize]).collect();
             for batch in color_in_blocks(&spokes, rest_positions.len()) {
                 let batch = batch.into_iter();

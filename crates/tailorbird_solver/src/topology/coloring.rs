@@ -1,9 +1,9 @@
 //! Sorts pairs (or threes, or fours) of particles into batches that share no particle.
 
-/// Tuples of a block in [`color_in_blocks`]: their particles fit the first level of cache.
+/// Number of tuples in a block of [`color_in_blocks`]: their particles fit the first level of cache.
 const BLOCK: usize = 1536;
 
-/// Gives each tuple the lowest colour that none of its particles has yet, and returns the numbers of the tuples by colour.
+/// Gives each tuple the lowest colour that none of its particles has yet, and returns the indices of the tuples by colour.
 ///
 /// Needs at most N times the largest number of tuples at a particle. Deterministic; keeps the order within a colour.
 pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<u32>> {
@@ -11,8 +11,8 @@ pub fn color<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<u
     color_some(tuples, &all, particles)
 }
 
-/// As [`color`], a block of tuples after the other, so that what is solved one after the other also lies close together. A batch
-/// has tuples of one block alone, by their lowest particle.
+/// Colours as [`color`], one block of tuples after the other, so that tuples of a batch also lie close together in memory. A batch has
+/// tuples of one block alone, by their lowest particle.
 pub fn color_in_blocks<const N: usize>(tuples: &[[u32; N]], particles: usize) -> Vec<Vec<u32>> {
     let mut sorted: Vec<u32> = (0..tuples.len() as u32).collect();
     sorted.sort_unstable_by_key(|&number| {
@@ -39,7 +39,7 @@ fn color_some<const N: usize>(
     for particle in some().flat_map(|(_, tuple)| tuple) {
         degree[particle as usize] += 1;
     }
-    // Enough words of bits at each particle for every colour that can come to meet it.
+    // As many words of bits at each particle as its colours can need.
     let words = degree.iter().max().map_or(0, |most| most * N / 64 + 1);
     let mut used = vec![0u64; particles * words];
     let mut batches: Vec<Vec<u32>> = Vec::new();

@@ -7,7 +7,7 @@ use bevy_math::Vec3;
 use super::coloring::color;
 use crate::memory::heap;
 
-/// What a spring resists.
+/// Deformation that a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ConstraintFamily {
     /// Springs that skip a particle: bending.
@@ -19,25 +19,25 @@ pub enum ConstraintFamily {
 }
 
 impl ConstraintFamily {
-    /// All, in the order in which they are solved.
+    /// All families, in the order in which they are solved.
     pub const ALL: [Self; 3] = [Self::Bend, Self::Shear, Self::Stretch];
 }
 
 /// A run of constraints of one family, no two of which share a particle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
-    /// What they resist.
+    /// Family of all its constraints.
     pub family: ConstraintFamily,
-    /// Which they are.
+    /// Range of its constraints.
     pub range: Range<usize>,
 }
 
 /// Springs between two particles, as parallel arrays.
 #[derive(Clone, Debug, Default)]
 pub struct DistanceConstraints {
-    /// The particles at the ends.
+    /// Particles at the ends.
     pub ends: Vec<[u32; 2]>,
-    /// Their distance at rest \[m\].
+    /// Distance at rest \[m\].
     pub rest_lengths: Vec<f32>,
     /// All constraints, in the order in which they are solved.
     pub batches: Vec<Batch>,
@@ -49,17 +49,17 @@ impl DistanceConstraints {
         self.ends.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// What they take on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.ends) + heap(&self.rest_lengths) + heap(&self.batches)
     }
 
-    /// The ends and rest lengths of one family.
+    /// Ends and rest lengths of one family.
     pub fn family(
         &self,
         family: ConstraintFamily,

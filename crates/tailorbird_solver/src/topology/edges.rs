@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 
 use super::{
     Topology,
@@ -11,6 +11,7 @@ use super::{
     fabric::Fabric,
     hinges::HingeConstraints,
     lattice::Lattice,
+    layout::{Layout, SheetLayout},
     mesh_edges::MeshEdges,
     neighbors::NeighborLists,
     order::ParticleOrder,
@@ -18,29 +19,31 @@ use super::{
     repair::Repaired,
     weave::Weave,
 };
-use crate::error::ShapeError;
+use crate::error::ClothShapeError;
 
-/// Particles that are this part of the square root of twice the area out of a plane still count as lying in it.
+/// Tolerance of a plane mesh: distance of a particle from the plane, as a part of the square root of twice the area.
 const FLAT: f32 = 1e-4;
 
-/// How close the square of a triangle's longest edge must come to the sum of the other two squares (or exceed it) for
-/// that edge to be a diagonal. 1 is a right angle.
+/// Least ratio of the square of a triangle's longest edge to the sum of the other two squares for that edge to be a diagonal. 1 is a right
+/// angle.
 const DIAGONAL: f32 = 0.9;
 
 /// Builds the topology of a triangle mesh. Areas and revision are left to the caller.
 pub(super) fn build(
     positions: &[Vec3],
     indices: &[u32],
+    uvs: &[Vec2],
     weld_distance: f32,
     scale: Vec3,
-) -> Result<Topology, ShapeError> {
+) -> Result<Topology, ClothShapeError> {
     let repaired = Repaired::new(positions, indices, weld_distance, scale);
     if repaired.triangles.is_empty() {
-        return Err(ShapeError::NoTriangles {
+        return Err(ClothShapeError::NoTriangles {
             vertices: positions.len(),
             triangles: 0,
         });
     }
+    let uvs = (!uvs.is_empty()).then(|| repaired.corner_uvs(indices, uvs));
     let mut topology = Topology {
         dropped: repaired.dropped(),
         rest_positions: repaired.positions.iter().map(|p| *p * scale).collect(),
@@ -54,7 +57,7 @@ pub(super) fn build(
     if topology.triangles.len() * 3 < indices.len() {
         topology.source_triangles = repaired.source_triangles;
     }
-    arrange(&mut topology, &repaired.edges);
+    arrange(&mut topology, &repaired.edges, uvs.as_deref());
     Ok(topology)
 }
 
@@ -68,37 +71,37 @@ pub(super) fn constraints(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Di
     constraints
 }
 
-/// Who is joined to whom by an edge or a diagonal.
+/// Neighbours of each particle by an edge or a diagonal.
 pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> NeighborLists {
     let [_, shear, stretch] = springs(triangles, rest_positions);
     NeighborLists::new(rest_positions.len(), stretch.iter().chain(&shear).copied())
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.
-fn arrange(topology: &mut Topology, edges: &MeshEdges) {
+fn arrange(topology: &mut Topology, edges: &MeshEdges, uvs: Option<&[[Vec2; 3]]>) {
     topology.flat = is_flat(&topology.rest_positions, &topology.triangles);
     let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-    if let Some(grid) = Recognized::detect(rest, triangles, edges, None) {
-        topology.lattice = Some(Lattice {
+    if let Some(grid) = Recognized::detect(rest, triangles, edges, uvs) {
+        topology.layout = Layout::Sheet(SheetLayout::from(Lattice {
             columns: grid.columns as u32,
             rows: grid.rows as u32,
             spacing: grid.spacing,
-        });
+        }));
         reorder(topology, grid.order);
     } else {
-        let mut weave = Weave::new(rest, triangles, edges, None);
+        let mut weave = Weave::new(rest, triangles, edges, uvs);
         let (chains, order) = Chains::build(rest, &weave);
         weave.renumber(&inverse(&order));
         reorder(topology, order);
         let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-        topology.fabric = Some(Fabric::new(rest, triangles, chains, &weave));
+        topology.layout = Layout::Mesh(Fabric::new(rest, triangles, chains, &weave));
     }
-    if !(topology.flat && topology.lattice.is_some()) {
+    if !(topology.flat && topology.lattice().is_some()) {
         topology.hinges = HingeConstraints::new(&topology.triangles, &topology.rest_positions);
     }
 }
 
-/// Stores the particle with the given number `order[i]` as `i`.
+/// Stores the particle with the original index `order[i]` as `i`.
 fn reorder(topology: &mut Topology, order: Vec<u32>) {
     let number = inverse(&order);
     let rest = &topology.rest_positions;
@@ -110,7 +113,7 @@ fn reorder(topology: &mut Topology, order: Vec<u32>) {
     topology.order = ParticleOrder::new(order);
 }
 
-/// Whether all triangles lie in one plane and face one way.
+/// Returns whether all triangles lie in one plane and face one way.
 fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     let corners = |t: &[u32; 3]| t.map(|i| rest_positions[i as usize]);
     let areas = triangles.iter().map(|t| {
@@ -136,15 +139,13 @@ fn is_flat(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     high - low <= FLAT * size && areas.into_iter().all(|area| area.dot(normal) > 0.0)
 }
 
-/// One side of an edge: the edge with the lower particle first, the opposite corner, whether the edge is the
-/// triangle's diagonal.
+/// One side of an edge: the edge with the lower particle first, the opposite corner, and a flag: the edge is the triangle's diagonal.
 type Side = ([u32; 2], u32, bool);
 
-/// The pairs of particles joined by springs, by family in the order of [`ConstraintFamily::ALL`].
+/// Pairs of particles joined by springs, by family in the order of [`ConstraintFamily::ALL`].
 ///
-/// An edge that is the longest of a right-angled or obtuse triangle on every side is a diagonal: it and the other
-/// diagonal of its quad resist shear. Every other edge resists stretch, and the corners opposite to it are joined
-/// against bending.
+/// An edge that is the longest of a right-angled or obtuse triangle on every side is a diagonal: it and the other diagonal of its quad
+/// resist shear. Every other edge resists stretch, and the corners opposite to it are joined against bending.
 fn springs(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> [Vec<[u32; 2]>; 3] {
     let mut sides: Vec<Side> = Vec::with_capacity(triangles.len() * 3);
     for &[a, b, c] in triangles {
@@ -218,8 +219,8 @@ mod tests {
         assert_eq!(
             topology.dropped,
             [
-                ShapeError::DegenerateTriangles { count: 2, first: 8 },
-                ShapeError::DuplicateTriangles {
+                ClothShapeError::DegenerateTriangles { count: 2, first: 8 },
+                ClothShapeError::DuplicateTriangles {
                     count: 1,
                     first: 10
                 },
@@ -234,7 +235,7 @@ mod tests {
             Topology::build(&ClothShape::mesh(line, [0, 1, 2]), Vec3::ONE).expect_err("degenerate");
         assert_eq!(
             error,
-            ShapeError::NoTriangles {
+            ClothShapeError::NoTriangles {
                 vertices: 3,
                 triangles: 0
             }

@@ -1,4 +1,4 @@
-//! What a triangle mesh that is no grid is held together by: chains along the threads, springs across them.
+//! Constraints of a triangle mesh that is no grid: chains along the threads, springs across them.
 
 use std::ops::Range;
 
@@ -12,23 +12,23 @@ use super::{
 };
 use crate::memory::heap;
 
-/// A weight below this is that of an edge across which nothing flows: the diagonal of a right-angled cell.
+/// Weight below which an edge has no flow across it: such is the diagonal of a right-angled cell.
 const LEAST_WEIGHT: f32 = 1e-3;
 
-/// How near neighbours may come to their common velocity in a substep [-].
+/// Largest part of the way to their common velocity that neighbours come in a substep [-].
 const MOST_EXCHANGE: f32 = 0.5;
 
-/// The compliance of a spring along a diagonal, as a part of that for shear: a shear angle γ stretches the diagonals of a
-/// square cell by γ/2, and energy goes with the square of it.
+/// Compliance of a spring along a diagonal, as a part of that for shear: a shear angle γ stretches the diagonals of a square cell by γ/2,
+/// and energy goes with the square of it.
 const DIAGONAL: f32 = 0.25;
 
-/// What a mesh that is no grid is held together by, in storage order.
+/// Constraints of a mesh that is no grid, in storage order.
 #[derive(Clone, Debug, Default)]
 pub struct Fabric {
     chains: Chains,
-    /// For each slot of the chains its particle; that of the link before where the chain has ended.
+    /// Particle of each slot of the chains; the last particle where the chain has ended.
     particle_or_last: Vec<u32>,
-    /// For each link of a batch whether its particles lie one after the other.
+    /// For each link of a batch, true if its particles lie one after the other.
     runs: Vec<bool>,
     shear: Springs,
     exchanges: Vec<Exchange>,
@@ -43,27 +43,27 @@ pub struct Springs {
     pub ends: Vec<[u32; 2]>,
     /// Rest lengths \[m\].
     pub rest_length: Vec<f32>,
-    /// The compliance of a spring is that of the fabric for shear \[m/N\] times this [-].
+    /// Ratio of the spring's compliance to that of the fabric for shear \[m/N\] [-].
     pub scale: Vec<f32>,
-    /// The square of the cosine of the angle to the warp [-].
+    /// Square of the cosine of the angle to the warp [-].
     pub along_warp: Vec<f32>,
-    /// The springs of each batch.
+    /// Springs of each batch.
     pub batches: Vec<Range<usize>>,
 }
 
-/// How two neighbours exchange momentum.
+/// Exchange of momentum between two neighbours.
 #[derive(Clone, Copy, Debug)]
 pub struct Exchange {
-    /// The two.
+    /// The two particles.
     pub ends: [u32; 2],
-    /// The weight of the edge in the discrete Laplacian: half the cotangents of the angles opposite to it [-].
+    /// Weight of the edge in the discrete Laplacian: half the sum of the cotangents of the angles opposite to it [-].
     pub weight: f32,
-    /// The most that viscosity times time may be \[m²\].
+    /// Largest product of viscosity and time \[m²\].
     pub limit: f32,
 }
 
 impl Fabric {
-    /// The fabric of a mesh whose particles are in storage order, and so are `chains` and `weave`.
+    /// Fabric of a mesh whose particles, `chains` and `weave` are in storage order.
     pub(super) fn new(
         rest_positions: &[Vec3],
         triangles: &[[u32; 3]],
@@ -101,7 +101,7 @@ impl Fabric {
         fabric
     }
 
-    /// What it takes on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.chains.memory_bytes()
             + heap(&self.particle_or_last)
@@ -110,37 +110,37 @@ impl Fabric {
             + heap(&self.exchanges)
     }
 
-    /// The edges along the threads.
+    /// Chains of the edges along the threads.
     pub fn chains(&self) -> &Chains {
         &self.chains
     }
 
-    /// For each slot of the chains its particle; that of the link before where the chain has ended.
+    /// Particle of each slot of the chains; the last particle where the chain has ended.
     pub fn particle_or_last(&self) -> &[u32] {
         &self.particle_or_last
     }
 
-    /// For each link of a batch ([`LANES`] slots) whether its particles lie one after the other.
+    /// For each link of a batch ([`LANES`] slots), true if its particles lie one after the other.
     pub fn runs(&self) -> &[bool] {
         &self.runs
     }
 
-    /// The edges across the threads.
+    /// Springs of the edges across the threads.
     pub fn shear(&self) -> &Springs {
         &self.shear
     }
 
-    /// Who exchanges momentum by viscosity.
+    /// Pairs that exchange momentum by viscosity.
     pub fn exchanges(&self) -> &[Exchange] {
         &self.exchanges
     }
 
-    /// How many particles there are; all indices are below.
+    /// Number of particles; all indices are below.
     pub fn particles(&self) -> usize {
         self.particles
     }
 
-    /// The diagonal of the box around the rest shape \[m\].
+    /// Diagonal of the box around the rest shape \[m\].
     pub fn size(&self) -> f32 {
         self.size
     }
@@ -210,7 +210,7 @@ fn exchanges(rest_positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Exchange> {
                 .fold(f32::INFINITY, f32::min),
         })
         .collect();
-    // One after the other mostly share no particle: then none has to wait for what the one before has stored.
+    // Successive exchanges mostly share no particle: then none has to wait for the stores of the one before.
     let pairs: Vec<[u32; 2]> = exchanges.iter().map(|exchange| exchange.ends).collect();
     let batches = color_in_blocks(&pairs, rest_positions.len());
     let order = batches.into_iter().flatten();

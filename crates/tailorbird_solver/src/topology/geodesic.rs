@@ -1,4 +1,4 @@
-//! How far particles are apart along the cloth at rest, for tethers.
+//! Geodesic distances: the lengths of the shortest paths along the cloth at rest, for tethers.
 //!
 //! A front runs over the mesh in the order of distance, as in fast marching on triangulated domains (Kimmel and Sethian
 //! 1998, Computing geodesic paths on manifolds). A triangle with two reached corners a and b is laid in the plane, and
@@ -7,20 +7,20 @@
 //!
 //! `x = (r_a² − r_b² + L²) / 2L`, `y = −√(r_a² − x²)`.
 //!
-//! Where the straight line from the image to the third corner c crosses ab, its length is the distance of c; elsewhere
-//! it is the lesser of `r_a + |ac|` and `r_b + |bc|`. Both are the lengths of paths, so that on flat cloth nothing comes out
-//! too short, and the first is exact there. What else is needed to keep it so:
+//! If the straight line from the image to the third corner c crosses ab, its length is the distance of c; elsewhere
+//! it is the lesser of `r_a + |ac|` and `r_b + |bc|`. Both are the lengths of paths, so that on flat cloth no distance comes out
+//! too short, and the first is exact there. Three cases need more than that:
 //!
-//! - A particle can be nearer than one of the two through whose edge its path comes, in obtuse triangles and beyond
-//!   them. It is reached ahead of that: further triangles are unfolded into the plane of the image.
-//! - A path bends around the reflex corners of a boundary and around saddles. They become roots: what is behind them
-//!   is measured from there.
-//! - Where fronts meet that came from different sides (around a hole or a sleeve, from two sources), no one source
-//!   fits. The directions from which a and b were reached tell; then each has an image of its own.
+//! - A particle can be nearer than one of the two through whose edge its path comes, in obtuse triangles and beyond them. It is reached
+//!   ahead of that particle: further triangles are unfolded into the plane of the image.
+//! - A path bends around the reflex corners of a boundary and around saddles. They become roots: distances behind them are measured from
+//!   there.
+//! - Where fronts meet that came from different sides (around a hole or a sleeve, from two sources), no single source fits. The directions
+//!   from which a and b were reached show this; then each has an image of its own.
 //!
-//! Exact on flat and on developable cloth (sleeves, folds). On a sphere of radius R it comes out short by up to
-//! the part `L r / 24 R²`, as an image in the plane takes no notice of the curvature between it and the edge. Sources a few
-//! edges apart on coarse, strongly curved cloth can make it 2 % short: measure from each alone there.
+//! The distance is exact on flat and on developable cloth (sleeves, folds). On a sphere of radius R it comes out short by up to the part `L
+//! r / 24 R²`, as an image in the plane ignores the curvature between it and the edge. Sources a few edges apart on coarse, strongly curved
+//! cloth can make it 2 % short: measure from each source alone there.
 
 mod front;
 #[cfg(test)]
@@ -32,11 +32,11 @@ use bevy_math::Vec3;
 
 use front::Front;
 
-/// No half-edge, no particle.
+/// Index of no half-edge and of no particle.
 const NONE: u32 = u32::MAX;
 /// Height over the edge below which a triangle is a line \[-\].
 const THIN: f32 = 1e-4;
-/// How far the angles around a particle exceed those of flat cloth before paths bend there \[rad\].
+/// Excess of the angles around a particle over those of flat cloth above which paths bend there \[rad\].
 const BEND: f32 = 0.05;
 
 /// A triangle mesh, prepared for geodesic distances from any of its particles.
@@ -45,17 +45,17 @@ const BEND: f32 = 0.05;
 #[derive(Clone, Debug, Default)]
 pub struct Geodesics {
     positions: Vec<Vec3>,
-    /// For each half-edge the particle at its corner.
+    /// Particle at the corner of each half-edge.
     corners: Vec<u32>,
-    /// For each half-edge the other one of the same edge; `NONE` at the boundary, where more than two meet, and
-    /// where the other triangle is seen from its back.
+    /// For each half-edge the other one of the same edge; `NONE` at the boundary, where more than two meet, and where the other triangle is
+    /// seen from its back.
     across: Vec<u32>,
-    /// For each half-edge the corner in the plane of the triangle, from the start of the edge, in lengths of the edge:
-    /// along it and across. Across is 0 where the triangle is a line.
+    /// For each half-edge the corner in the plane of the triangle, from the start of the edge, in lengths of the edge: along it and across.
+    /// Across is 0 for a triangle that is a line.
     apexes: Vec<[f32; 2]>,
-    /// For each triangle its unit normal; zero where it has no area.
+    /// Unit normal of each triangle; zero for one without area.
     normals: Vec<Vec3>,
-    /// Where the half-edges of each particle start in `around`; one more than there are particles.
+    /// Start of the half-edges of each particle in `around`; one more than there are particles.
     offsets: Vec<u32>,
     around: Vec<u32>,
     /// Particles at which the shortest path can bend.
@@ -126,11 +126,10 @@ impl Geodesics {
         self.nearest(sources).0
     }
 
-    /// Distance of each particle from the nearest source \[m\], and which of `sources` that is, both of shape
-    /// \[particles\].
+    /// Distance of each particle from the nearest source \[m\], and the index of that source in `sources`, both of shape \[particles\].
     ///
-    /// Where no path leads the distance is infinite and the source [`u32::MAX`]. Sources out of range are ignored; of
-    /// equal ones the first counts.
+    /// Without a path the distance is infinite and the source [`u32::MAX`]. Sources out of range are ignored; of equal distances the
+    /// first source counts.
     pub fn nearest(&self, sources: &[u32]) -> (Vec<f32>, Vec<u32>) {
         Front::new(self, sources).run()
     }
@@ -196,11 +195,11 @@ fn previous(half: u32) -> u32 {
     }
 }
 
-/// Chooses up to `most` of the particles `pins` that lie far from each other, for the tethers of a cloth; all of them
-/// where there are no more than that.
+/// Chooses up to `most` of the particles `pins` that lie far from each other, for the tethers of a cloth; all of them if there are no more
+/// than that.
 ///
-/// The first is the one farthest from the mean of the pins, each next one the farthest from those chosen before
-/// (straight lines between `rest_positions` \[m\]; the earlier of equals). Pins out of range are left out.
+/// The first is the pin farthest from the mean of the pins, each next one the pin farthest from those chosen before (straight lines between
+/// `rest_positions` \[m\]; the earlier of equals). Pins out of range are left out.
 pub fn tether_anchors(pins: &[u32], rest_positions: &[Vec3], most: usize) -> Vec<u32> {
     let at = |pin: u32| rest_positions.get(pin as usize).copied();
     let pins: Vec<(u32, Vec3)> = pins.iter().filter_map(|&i| Some((i, at(i)?))).collect();

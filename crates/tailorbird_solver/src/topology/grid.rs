@@ -3,28 +3,31 @@
 use bevy_math::{UVec2, Vec2, Vec3};
 
 use super::{
-    Topology, constraints::ConstraintFamily, constraints::DistanceConstraints, lattice::Lattice,
+    Topology,
+    constraints::ConstraintFamily,
+    constraints::DistanceConstraints,
+    lattice::Lattice,
+    layout::{Layout, SheetLayout},
 };
 
 /// Builds the topology of a grid from its particles in row-major order. Areas and revision are left to the caller.
 pub(super) fn build(rest_positions: Vec<Vec3>, resolution: UVec2) -> Topology {
     Topology {
-        grid: Some(resolution),
         flat: true,
-        lattice: Some(Lattice {
+        layout: Layout::Sheet(SheetLayout::from(Lattice {
             columns: resolution.x,
             rows: resolution.y,
             spacing: Vec2::new(
                 rest_positions[0].distance(rest_positions[1]),
                 rest_positions[0].distance(rest_positions[resolution.x as usize]),
             ),
-        }),
+        })),
         rest_positions,
         ..Default::default()
     }
 }
 
-/// How many springs there are.
+/// Number of springs.
 pub(super) fn constraint_count(columns: usize, rows: usize) -> usize {
     let at = |step: usize| {
         let (c, r) = (columns.saturating_sub(step), rows.saturating_sub(step));
@@ -33,8 +36,8 @@ pub(super) fn constraint_count(columns: usize, rows: usize) -> usize {
     at(1) + at(2)
 }
 
-/// The springs, 8 for each particle of a large grid. A spring that spans `step` rows (or columns) shares no particle
-/// with those whose first row, divided by `step`, is even as well: two batches for each direction.
+/// Springs, 8 for each particle of a large grid. A spring that spans `step` rows (or columns) shares no particle with springs whose first
+/// row, divided by `step`, is even as well: two batches for each direction.
 pub(super) fn constraints(columns: u32, rows: u32, rest_positions: &[Vec3]) -> DistanceConstraints {
     use ConstraintFamily::{Bend, Shear, Stretch};
     const ALONG_ROW: (u32, u32, bool) = (1, 0, false);

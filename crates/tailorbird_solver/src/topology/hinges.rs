@@ -1,4 +1,4 @@
-//! Hinges: what two triangles that share an edge say about how the surface is bent there.
+//! Hinges: pairs of triangles that share an edge, and the measure of bending there.
 //!
 //! Of the four particles of a hinge (ends x₀, x₁ of the edge, opposite corners x₂, x₃) the vector D = Σ Kᵢ xᵢ vanishes
 //! where they lie in a plane as they do at rest; it has the length 2 L sin(θ/2) after a fold by the angle θ along an edge of
@@ -8,6 +8,7 @@
 //! the triangle of x₂, the primed ones in that of x₃.
 //!
 //! # Energy
+//!
 //! The energy of a hinge is ½ B g |D|² with B the bending rigidity \[N m\] and
 //!
 //! g = 1/(S (1 + r (3r − 1)/2 + r² q²/2)), S = A + A′, r = (A cot₀ cot₁ + A′ cot₀′ cot₁′)/S, q = 2 (A cot₀ − A′ cot₀′)/S
@@ -16,7 +17,7 @@
 //! give each edge a third of the area of its triangles, but in a sheet of right-angled triangles that is bent along its rows
 //! one edge in three is bent, and it is bent by the angle that belongs to the whole area S.
 //!
-//! The other factor is there because a hinge feels more than the bending across its edge. On a surface of small curvature M
+//! The other factor is there because a hinge measures more than the bending across its edge. On a surface of small curvature M
 //! (in the frame of the edge: t along, n across), D = ±S (Mₙₙ − r Mₜₜ + q Mₜₙ). Edges whose r is large, like the diagonals of
 //! a grid (r = 1), count curvature that other edges count as well. The factor is the simplest one that is right wherever
 //! the sum over all hinges can be done by hand, for curvature in any direction: the equilateral triangulation (r = ⅓, q = 0:
@@ -34,18 +35,18 @@ use bevy_math::{DVec3, Vec3};
 use super::{coloring::color_in_blocks, mesh_edges::MOST_SIDES};
 use crate::memory::heap;
 
-/// A triangle whose area is below this part of its longest edge squared has no hinges.
+/// Ratio of a triangle's area to the square of its longest edge below which it has no hinges.
 const DEGENERATE: f64 = 1e-6;
 
-/// A fold at rest below this angle \[rad\] counts as none.
+/// Angle of a fold at rest \[rad\] below which a hinge counts as flat.
 const FLAT: f64 = 1e-3;
 
 /// A run of hinges no two of which share a particle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HingeBatch {
-    /// Which they are.
+    /// Range of its hinges.
     pub range: Range<usize>,
-    /// Whether they are flat at rest: all their rest lengths are 0.
+    /// True if all its hinges are flat at rest: their rest lengths are 0.
     pub flat: bool,
 }
 
@@ -64,7 +65,7 @@ pub struct HingeConstraints {
     pub batches: Vec<HingeBatch>,
 }
 
-/// What is known of a hinge besides its particles.
+/// Properties of a hinge besides its particles.
 #[derive(Clone, Copy)]
 struct Hinge {
     coefficients: [f32; 4],
@@ -73,10 +74,10 @@ struct Hinge {
 }
 
 impl HingeConstraints {
-    /// The hinges of a mesh: one for each edge of two triangles that are not degenerate. At an edge of up to eight triangles
-    /// the two that lie flattest are a pair, then the next two, as long as they are folded by less than 60°.
+    /// Hinges of a mesh: one for each edge of two triangles that are not degenerate. At an edge of up to eight triangles the two that lie
+    /// flattest are a pair, then the next two, as long as they are folded by less than 60°.
     ///
-    /// `rest_positions` are those of the particles \[m\].
+    /// `rest_positions` are the positions of the particles at rest \[m\].
     ///
     /// # Panics
     /// When a triangle's corner is not below the number of particles.
@@ -118,7 +119,7 @@ impl HingeConstraints {
         self.particles.len()
     }
 
-    /// What they take on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.particles)
             + heap(&self.coefficients)
@@ -127,7 +128,7 @@ impl HingeConstraints {
             + heap(&self.batches)
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.particles.is_empty()
     }
@@ -159,13 +160,13 @@ fn pairs_of_triangles(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Vec<[u
     pairs
 }
 
-/// The pairs of the triangles at one edge of more than two: the two that lie flattest, then the next two.
+/// Pairs of the triangles at one edge of more than two: the two that lie flattest, then the next two.
 fn flattest_pairs(
     [a, b]: [u32; 2],
     mut opposite: Vec<u32>,
     rest_positions: &[Vec3],
 ) -> Vec<[u32; 4]> {
-    /// The cosine of the largest fold.
+    /// Cosine of the largest fold.
     const MOST_FOLDED: f64 = 0.5;
     let at = |i: u32| rest_positions[i as usize].as_dvec3();
     let along = (at(b) - at(a)).normalize_or_zero();
@@ -196,7 +197,7 @@ fn flattest_pairs(
     }
 }
 
-/// Measures one hinge; none where a triangle is degenerate.
+/// Measures one hinge; `None` where a triangle is degenerate.
 fn hinge([x0, x1, x2, x3]: [DVec3; 4]) -> Option<Hinge> {
     let edge = x1 - x0;
     // Area, and cotangents at both ends of the edge.

@@ -1,6 +1,6 @@
 //! The edges of a triangle mesh and the triangles on their sides.
 
-/// More triangles than these at one edge are not next to each other.
+/// Number of triangles at one edge above which they do not count as adjacent.
 pub(super) const MOST_SIDES: usize = 8;
 
 /// The edges of a triangle mesh.
@@ -9,17 +9,17 @@ pub(super) const MOST_SIDES: usize = 8;
 /// the next one.
 #[derive(Clone, Debug, Default)]
 pub struct MeshEdges {
-    /// The particles at the ends of each edge, the lower first. Ascending.
+    /// Particles at the ends of each edge, the lower first. Ascending.
     pub ends: Vec<[u32; 2]>,
-    /// For each side its edge.
+    /// Edge of each side.
     pub edge_of_side: Vec<u32>,
-    /// Where the sides of each edge start in `sides`; one more than there are edges.
+    /// Start of the sides of each edge in `sides`; one more than there are edges.
     offsets: Vec<u32>,
     sides: Vec<u32>,
 }
 
 impl MeshEdges {
-    /// The edges of triangles whose corners are all below `particles`. Linear time where no particle has very many.
+    /// Edges of triangles whose corners are all below `particles`. Linear time where no particle has very many.
     pub fn new(particles: usize, triangles: &[[u32; 3]]) -> Self {
         let directed = |side: usize| {
             let triangle = &triangles[side / 3];
@@ -69,19 +69,19 @@ impl MeshEdges {
         self.ends.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The sides that lie on one edge: one at a border, more than two where the mesh is not a surface.
+    /// Sides that lie on one edge: one at a border, more than two where the mesh is not a surface.
     pub fn sides(&self, edge: u32) -> &[u32] {
         let edge = edge as usize;
         &self.sides[self.offsets[edge] as usize..self.offsets[edge + 1] as usize]
     }
 
-    /// The sides of other triangles on the edge of `side`; none where there are more than eight triangles, as every one would
-    /// be next to every other.
+    /// Sides of other triangles on the edge of `side`; none where there are more than eight triangles, as every one would be adjacent to
+    /// every other.
     pub fn across(&self, side: u32) -> impl Iterator<Item = u32> + '_ {
         let sides = self.sides(self.edge_of_side[side as usize]);
         let few = if sides.len() > MOST_SIDES { &[] } else { sides };

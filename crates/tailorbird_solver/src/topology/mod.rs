@@ -1,18 +1,22 @@
-//! What is computed once from the rest shape: particles, triangles, constraints. Immutable, shared.
+//! The topology of a cloth, computed once from its rest shape: particles, triangles, constraints. Immutable, shared.
 
+pub mod alive;
 pub mod chains;
 pub mod coloring;
 pub mod constraints;
+pub mod copies;
 pub mod edges;
 pub mod fabric;
 pub mod geodesic;
 pub mod grid;
 pub mod hinges;
 pub mod lattice;
+pub mod layout;
 pub mod mesh_edges;
 pub mod neighbors;
 pub mod order;
 mod orientation;
+mod pieces;
 pub mod recognize;
 pub mod repair;
 pub mod report;
@@ -22,15 +26,12 @@ pub mod triangles;
 pub mod weave;
 pub mod weld;
 
-use std::sync::{
-    OnceLock,
-    atomic::{AtomicU64, Ordering},
-};
+use std::sync::OnceLock;
 
 use bevy_math::{UVec2, Vec3};
 
 use crate::{
-    error::ShapeError,
+    error::ClothShapeError,
     memory::heap,
     shape::{ClothShape, check_positions},
 };
@@ -38,31 +39,28 @@ use constraints::DistanceConstraints;
 use fabric::Fabric;
 use hinges::HingeConstraints;
 use lattice::Lattice;
+use layout::Layout;
 use neighbors::{NeighborLists, Neighbors};
 use order::ParticleOrder;
 use repair::TriangleCopy;
-use report::MeshReport;
+use report::ClothMeshReport;
 use triangles::Triangles;
 
-/// What is computed once from the rest shape. Particles are in storage order throughout.
+/// Topology of a cloth, computed once from its rest shape. Particles are in storage order throughout.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Different for each topology that was ever built; 0 is the empty one. What is derived from a topology is
+    /// Equal for equal shapes at equal scales, in every process; 0 is the empty one. Everything that is derived from a topology is
     /// rebuilt when this changes.
     pub revision: u64,
     /// The order in which the particles are stored.
     pub order: ParticleOrder,
-    /// Where the particles lie at rest, in the cloth's frame, scale included \[m\].
+    /// Rest positions in the cloth's frame, scale included \[m\].
     pub rest_positions: Vec<Vec3>,
-    /// Columns and rows, where the cloth is a grid.
-    pub grid: Option<UVec2>,
-    /// Where the particles lie in columns and rows at equal spacing.
-    pub lattice: Option<Lattice>,
-    /// What holds it together where they do not.
-    pub fabric: Option<Fabric>,
-    /// What resists bending, but in a flat lattice.
+    /// Layout of the particles: a sheet or a mesh.
+    pub layout: Layout,
+    /// Hinges, which resist bending; none in a flat sheet, whose lines do.
     pub hinges: HingeConstraints,
-    /// Whether the particles lie in one plane, nowhere on top of each other.
+    /// True if the particles lie in one plane, nowhere on top of each other.
     pub flat: bool,
     /// The triangles of a mesh; none of a grid.
     pub triangles: Vec<[u32; 3]>,
@@ -78,32 +76,32 @@ pub struct Topology {
     pub scale: Vec3,
     /// Area of each triangle of a mesh at rest \[m²\]; none of a grid.
     pub triangle_areas: Vec<f32>,
-    /// A third of the area of the triangles around each particle \[m²\]; none of a lattice.
+    /// A third of the area of the triangles around each particle \[m²\]; none of a sheet without copies.
     areas: Vec<f32>,
+    /// For each particle beyond those of the rest shape the one that it is a copy of.
+    origins: Vec<u32>,
     /// Mean area for each particle \[m²\].
     cell_area: f32,
     /// Made when they are asked for.
     constraints: OnceLock<DistanceConstraints>,
     /// Made when they are asked for; never for a lattice.
     neighbors: OnceLock<NeighborLists>,
-    /// What was left out.
-    pub dropped: Vec<ShapeError>,
-    /// What was found in a mesh; nothing in a grid.
-    pub report: MeshReport,
+    /// Errors of the parts that were left out.
+    pub dropped: Vec<ClothShapeError>,
+    /// Findings in a mesh; empty for a grid.
+    pub report: ClothMeshReport,
 }
-
-static REVISION: AtomicU64 = AtomicU64::new(1);
 
 impl Topology {
     /// Builds the topology of a shape that is scaled by `scale`.
     ///
     /// # Errors
-    /// What is wrong with the shape or the scale. What is wrong with a mesh and can be repaired is, and is told in
+    /// An invalid shape or scale. Faults of a mesh that can be repaired are, and are told in
     /// [`Topology::report`]; triangles that are left out are listed in [`Topology::dropped`] as well.
-    pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ShapeError> {
+    pub fn build(shape: &ClothShape, scale: Vec3) -> Result<Self, ClothShapeError> {
         shape.check()?;
         if !scale.is_finite() || scale.to_array().contains(&0.0) {
-            return Err(ShapeError::Scale { value: scale });
+            return Err(ClothShapeError::Scale { value: scale });
         }
         let mut topology = match shape {
             ClothShape::Grid { resolution, .. } => {
@@ -114,13 +112,14 @@ impl Topology {
             ClothShape::Mesh {
                 positions,
                 indices,
+                uvs,
                 weld_distance,
             } => {
                 check_positions(positions.iter().map(|p| *p * scale))?;
-                edges::build(positions, indices, *weld_distance, scale)?
+                edges::build(positions, indices, uvs, *weld_distance, scale)?
             }
         };
-        topology.revision = REVISION.fetch_add(1, Ordering::Relaxed);
+        topology.revision = revision(shape, scale);
         topology.scale = scale;
         topology.measure_areas();
         Ok(topology)
@@ -131,10 +130,42 @@ impl Topology {
         self.rest_positions.len()
     }
 
+    /// Columns and rows, where particles lie in them.
+    pub fn lattice(&self) -> Option<&Lattice> {
+        match &self.layout {
+            Layout::Sheet(sheet) => Some(&sheet.lattice),
+            Layout::Mesh(_) => None,
+        }
+    }
+
+    /// Chains and springs, where particles lie anywhere.
+    pub fn fabric(&self) -> Option<&Fabric> {
+        match &self.layout {
+            Layout::Sheet(_) => None,
+            Layout::Mesh(fabric) => Some(fabric),
+        }
+    }
+
+    /// Columns and rows of a grid, whose cells are cut in one way: not of a mesh that turned out to be a sheet.
+    pub fn grid_lattice(&self) -> Option<&Lattice> {
+        self.lattice().filter(|_| self.triangles.is_empty())
+    }
+
+    /// The resolution of a grid.
+    pub fn grid(&self) -> Option<UVec2> {
+        let size = |lattice: &Lattice| UVec2::new(lattice.columns, lattice.rows);
+        self.grid_lattice().map(size)
+    }
+
+    /// Returns whether the shape is a grid: then vertices and particles are the same.
+    pub fn is_grid(&self) -> bool {
+        self.grid_lattice().is_some()
+    }
+
     /// Particles at the corners of each triangle, counter-clockwise seen from the front.
     #[inline]
     pub fn triangles(&self) -> Triangles<'_> {
-        match self.grid {
+        match self.grid() {
             Some(size) => Triangles::of_grid(size),
             None => Triangles::of_list(&self.triangles),
         }
@@ -162,8 +193,11 @@ impl Topology {
     /// When the vertex is out of range.
     #[inline]
     pub fn particle_of_vertex(&self, vertex: usize) -> u32 {
-        if self.grid.is_some() {
-            assert!(vertex < self.particles(), "vertex {vertex} of a grid");
+        if self.is_grid() {
+            assert!(
+                vertex < self.original_particles(),
+                "vertex {vertex} of a grid"
+            );
             return vertex as u32;
         }
         self.particle_of_vertex[vertex]
@@ -171,8 +205,8 @@ impl Topology {
 
     /// For each vertex of the source the particle that moves it.
     pub fn particles_of_vertices(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
-        let vertices = if self.grid.is_some() {
-            self.particles()
+        let vertices = if self.is_grid() {
+            self.original_particles()
         } else {
             self.particle_of_vertex.len()
         };
@@ -181,7 +215,7 @@ impl Topology {
 
     /// Area of each triangle at rest \[m²\].
     pub fn triangle_areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
-        let cell = self.lattice.map_or(0.0, Lattice::cell_area);
+        let cell = self.lattice().map_or(0.0, Lattice::cell_area);
         let of = |triangle| self.triangle_areas.get(triangle).copied();
         (0..self.triangles().len()).map(move |triangle| of(triangle).unwrap_or(0.5 * cell))
     }
@@ -189,25 +223,26 @@ impl Topology {
     /// For each particle a third of the area of the triangles around it, in a lattice a quarter of the cells around it
     /// \[m²\].
     pub fn areas(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
-        let of = |particle| match self.lattice {
+        let of = |particle| match (&self.layout, self.areas.get(particle)) {
+            (_, Some(area)) => *area,
             // However its cells are cut.
-            Some(lattice) => lattice.area_of(particle),
-            None => self.areas[particle],
+            (Layout::Sheet(sheet), None) => sheet.lattice.area_of(particle),
+            (Layout::Mesh(_), None) => 0.0,
         };
         (0..self.particles()).map(of)
     }
 
-    /// The springs of the classic solver, in batches that share no particle. They are made when they are asked for first.
+    /// Springs of the classic solver, in batches that share no particle. They are made at the first call.
     pub fn constraints(&self) -> &DistanceConstraints {
-        self.constraints.get_or_init(|| match self.grid {
+        self.constraints.get_or_init(|| match self.grid() {
             Some(size) => grid::constraints(size.x, size.y, &self.rest_positions),
             None => edges::constraints(&self.triangles, &self.rest_positions),
         })
     }
 
-    /// How many springs [`Self::constraints`] has. For a grid they are not made.
+    /// Number of springs of [`Self::constraints`]. For a grid they are not made.
     pub fn constraint_count(&self) -> usize {
-        match self.grid {
+        match self.grid() {
             Some(size) => grid::constraint_count(size.x as usize, size.y as usize),
             None => self.constraints().len(),
         }
@@ -215,8 +250,8 @@ impl Topology {
 
     /// Particles joined to one by an edge or a diagonal; none where the particle is out of range.
     pub fn neighbors(&self, particle: u32) -> Neighbors<'_> {
-        if let Some(lattice) = self.lattice {
-            return Neighbors::in_lattice(lattice, particle);
+        if let Layout::Sheet(sheet) = &self.layout {
+            return Neighbors::in_sheet(sheet, particle);
         }
         let lists = self
             .neighbors
@@ -224,7 +259,7 @@ impl Topology {
         Neighbors::Listed(lists.of(particle))
     }
 
-    /// What it takes on the heap by now, \[byte\].
+    /// Memory on the heap by now \[byte\].
     pub fn memory_bytes(&self) -> usize {
         heap(&self.rest_positions)
             + heap(&self.triangles)
@@ -232,13 +267,14 @@ impl Topology {
             + heap(&self.particle_of_vertex)
             + heap(&self.triangle_areas)
             + heap(&self.areas)
+            + heap(&self.origins)
+            + self.layout.memory_bytes()
             + heap(&self.dropped)
             + heap(&self.turned)
             + heap(&self.copies)
             + heap(&self.report.islands)
             + self.order.memory_bytes()
             + self.hinges.memory_bytes()
-            + self.fabric.as_ref().map_or(0, Fabric::memory_bytes)
             + self
                 .constraints
                 .get()
@@ -252,10 +288,9 @@ impl Topology {
             let [p, q] = [a, b].map(|i| self.rest_positions[i as usize]);
             ([a, b], p.distance(q))
         };
-        match (self.lattice, &self.fabric) {
-            (Some(lattice), _) => lattice.edges().map(measured).collect(),
-            (None, Some(fabric)) => fabric.chains().edges().collect(),
-            (None, None) => Vec::new(),
+        match &self.layout {
+            Layout::Sheet(sheet) => sheet.edges().map(measured).collect(),
+            Layout::Mesh(fabric) => fabric.chains().edges().collect(),
         }
     }
 
@@ -265,14 +300,14 @@ impl Topology {
     }
 
     fn measure_areas(&mut self) {
-        if self.grid.is_none() {
+        if !self.is_grid() {
             let area = |triangle: &[u32; 3]| {
                 let [a, b, c] = triangle.map(|i| self.rest_positions[i as usize]);
                 0.5 * (b - a).cross(c - a).length()
             };
             self.triangle_areas = self.triangles.iter().map(area).collect();
         }
-        if self.lattice.is_none() {
+        if self.lattice().is_none() {
             self.areas = vec![0.0; self.particles()];
             for (triangle, area) in self.triangles.iter().zip(&self.triangle_areas) {
                 for &i in triangle {
@@ -282,4 +317,10 @@ impl Topology {
         }
         self.cell_area = self.triangle_areas().sum::<f32>() / self.particles().max(1) as f32;
     }
+}
+
+/// The revision of the topology of a shape that is scaled by `scale`.
+pub fn revision(shape: &ClothShape, scale: Vec3) -> u64 {
+    let print = shape.fingerprint(scale);
+    ((print >> 64) as u64 ^ print as u64).max(1)
 }

@@ -1,16 +1,16 @@
-//! Who is joined to whom.
+//! Neighbours of particles: by an edge or a diagonal.
 
 use std::ops::Deref;
 
-use super::lattice::Lattice;
+use super::{alive::Family, layout::SheetLayout};
 use crate::memory::heap;
 
-/// The particles that are joined to one by an edge or a diagonal.
+/// Particles that are joined to a particle by an edge or a diagonal.
 #[derive(Clone, Copy, Debug)]
 pub enum Neighbors<'a> {
-    /// Those of a particle of a lattice: up to eight.
+    /// Neighbours of a particle of a lattice: up to eight.
     Around([u32; 8], usize),
-    /// Those of a particle of a mesh.
+    /// Neighbours of a particle of a mesh.
     Listed(&'a [u32]),
 }
 
@@ -26,26 +26,31 @@ impl Deref for Neighbors<'_> {
 }
 
 impl Neighbors<'_> {
-    /// Those of a particle of a lattice; none where it is out of range.
-    pub(super) fn in_lattice(lattice: Lattice, particle: u32) -> Self {
-        const AROUND: [(i64, i64); 8] = [
-            (1, 0),
-            (-1, 0),
-            (0, 1),
-            (0, -1),
-            (1, 1),
-            (-1, -1),
-            (-1, 1),
-            (1, -1),
+    /// Neighbours of a particle of a sheet by whole edges; none where it is out of range.
+    pub(super) fn in_sheet(sheet: &SheetLayout, particle: u32) -> Self {
+        const AROUND: [((i64, i64), Family); 8] = [
+            ((1, 0), Family::Row),
+            ((-1, 0), Family::Row),
+            ((0, 1), Family::Column),
+            ((0, -1), Family::Column),
+            ((1, 1), Family::Falling),
+            ((-1, -1), Family::Falling),
+            ((-1, 1), Family::Rising),
+            ((1, -1), Family::Rising),
         ];
+        let lattice = &sheet.lattice;
         let (columns, rows) = (i64::from(lattice.columns), i64::from(lattice.rows));
         let (column, row) = (i64::from(particle) % columns, i64::from(particle) / columns);
         let (mut particles, mut count) = ([0; 8], 0);
-        for (dx, dy) in AROUND {
+        for ((dx, dy), family) in AROUND {
             let (x, y) = (column + dx, row + dy);
             if row < rows && (0..columns).contains(&x) && (0..rows).contains(&y) {
-                particles[count] = (y * columns + x) as u32;
-                count += 1;
+                let other = (y * columns + x) as u32;
+                // The first end of an edge comes first.
+                if sheet.is_alive(family, particle.min(other)) {
+                    particles[count] = other;
+                    count += 1;
+                }
             }
         }
         Self::Around(particles, count)
@@ -55,7 +60,7 @@ impl Neighbors<'_> {
 /// For each particle of a mesh the particles at the other ends of its edges.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NeighborLists {
-    /// Where the list of each particle starts in `particles`; one more than there are particles.
+    /// Start of the list of each particle in `particles`; one more than there are particles.
     offsets: Vec<u32>,
     particles: Vec<u32>,
 }
@@ -84,7 +89,7 @@ impl NeighborLists {
         }
     }
 
-    /// The neighbours of one particle; none where the particle is out of range.
+    /// Neighbours of one particle; none where the particle is out of range.
     pub(super) fn of(&self, particle: u32) -> &[u32] {
         let i = particle as usize;
         match (self.offsets.get(i), self.offsets.get(i + 1)) {
@@ -102,7 +107,7 @@ impl NeighborLists {
 mod tests {
     use bevy_math::Vec2;
 
-    use super::*;
+    use super::{super::lattice::Lattice, *};
 
     #[test]
     fn those_in_a_lattice_are_the_ones_around() {
@@ -112,7 +117,7 @@ mod tests {
             spacing: Vec2::ONE,
         };
         let sorted = |particle| {
-            let mut around = Neighbors::in_lattice(lattice, particle).to_vec();
+            let mut around = Neighbors::in_sheet(&lattice.into(), particle).to_vec();
             around.sort_unstable();
             around
         };

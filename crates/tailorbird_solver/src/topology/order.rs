@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::memory::heap;
 
-/// How particles are numbered.
+/// The permutation of particles between their original order and the order in which they are stored.
 ///
 /// Users know a particle by its *given* number: its place in [`ClothShape::rest_positions`](crate::shape::ClothShape::rest_positions).
 /// Everything inside works with *stored* numbers, which put particles side by side that are solved side by side. For grids the
@@ -31,7 +31,7 @@ impl ParticleOrder {
         Self(Some(Arc::new(Numbers { given, stored })))
     }
 
-    /// What it takes on the heap, shared by all clones \[byte\].
+    /// Memory on the heap, shared by all clones \[byte\].
     pub fn memory_bytes(&self) -> usize {
         self.0
             .as_ref()

@@ -2,24 +2,24 @@
 
 use super::mesh_edges::MeshEdges;
 
-/// How the triangles of a mesh face.
+/// Orientation of the triangles of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Orientation {
-    /// The triangles to turn around.
+    /// Triangles to turn around.
     pub turned: Vec<u32>,
-    /// In pieces that have no two sides: the edges whose triangles face opposite ways.
+    /// Edges whose triangles face opposite ways, in pieces that have no two sides.
     pub one_sided: Vec<u32>,
 }
 
 impl Orientation {
-    /// Walks over the edges of two triangles. In each piece that these join the fewer triangles are turned around; a piece that
-    /// has no two sides is left as it is. Linear time.
+    /// Walks over the edges of two triangles. In each piece that these join, the fewer triangles are turned around; a piece that has no two
+    /// sides is left as it is. Linear time.
     pub fn new(edges: &MeshEdges, triangles: &[[u32; 3]]) -> Self {
         let forward = |side: u32| {
             let (triangle, k) = (triangles[side as usize / 3], side as usize % 3);
             triangle[k] < triangle[(k + 1) % 3]
         };
-        // Across an edge of two triangles: the side there, and whether it runs the same way, which is wrong.
+        // Across an edge of two triangles: the side there, and a flag: it runs in the same direction, which is wrong.
         let across = |side: u32| match edges.sides(edges.edge_of_side[side as usize]) {
             &[a, b] => Some((a + b - side, forward(a) == forward(b))),
             _ => None,

@@ -4,16 +4,16 @@ use bevy_math::{Vec2, Vec2Swizzles as _, Vec3};
 
 use super::mesh_edges::MeshEdges;
 
-/// How far the lengths of the edges of one direction may lie from their mean, as a part of it.
+/// Tolerance of the lengths of the edges of one direction: deviation from their mean, as a part of it.
 const UNIFORM: f32 = 1e-3;
 
-/// How far the corners of the cells may be from right angles, as a cosine.
+/// Tolerance of the right angles of the cells, as a cosine.
 const RIGHT_ANGLE: f32 = 1e-2;
 
-/// How steep the texture's v may be along the rows against along the columns: the tangent of 22.5°.
+/// Largest ratio of the slope of the texture's v along the rows to that along the columns: the tangent of 22.5°.
 const ACROSS: f32 = 0.414;
 
-/// How steep the first axis must be along the rows or columns to orient the grid. 1 is the axis itself.
+/// Least slope of the first axis along the rows or columns that orients the grid. 1 is the axis itself.
 const STEEP: f32 = 0.1;
 
 const UNPLACED: [i32; 2] = [i32::MIN; 2];
@@ -30,7 +30,7 @@ pub struct Recognized {
     pub rows: usize,
     /// Length of the edges along rows and along columns at rest \[m\].
     pub spacing: Vec2,
-    /// `order[row * columns + column]` is the given index of that particle.
+    /// `order[row * columns + column]` is the original index of that particle.
     pub order: Vec<u32>,
 }
 
@@ -42,15 +42,15 @@ struct Quad {
 }
 
 impl Recognized {
-    /// The grid that a mesh is, whatever the order of its vertices and triangles; `None` where it is none.
+    /// Grid that a mesh forms, whatever the order of its vertices and triangles; `None` where it forms none.
     ///
-    /// It may be flat or rolled up: all that counts is that the edges of each direction have one length and that the
-    /// cells' angles are right. A closed tube, a hole, a missing triangle, an unused particle, a triangle that faces the
-    /// other way make it something else. `edges` are those of `triangles`. Linear time.
+    /// It may be flat or rolled up: the edges of each direction must have one length and the cells' angles be right, no more. With a closed
+    /// tube, a hole, a missing triangle, an unused particle, or a triangle that faces the other way, the mesh is no grid. `edges` are the
+    /// edges of `triangles`. Linear time.
     ///
-    /// Rows follow one another along +v, where there are texture coordinates (`uvs`, at the corners of each triangle),
-    /// else along −y, or in a horizontal sheet along +z, as far as the grid's directions allow. A grid whose texture lies
-    /// askew on it is none either: its threads do not follow its edges.
+    /// Rows follow one another along +v, where there are texture coordinates (`uvs`, at the corners of each triangle), else along −y, or in
+    /// a horizontal sheet along +z, as far as the grid's directions allow. A mesh whose texture lies askew on it is no grid either: its
+    /// threads do not follow its edges.
     pub fn detect(
         rest_positions: &[Vec3],
         triangles: &[[u32; 3]],
@@ -66,7 +66,7 @@ impl Recognized {
         let lengths = lattice.edge_lengths(rest_positions)?;
         lattice.spacing = Vec2::from_array(lengths);
 
-        // How steep a value at the triangles' corners is along the rows and down the columns.
+        // Slopes of a value at the triangles' corners, along the rows and down the columns.
         let slopes = |value: &dyn Fn(usize, usize) -> f32| {
             let (mut sum, mut count) = ([0.0f64; 2], [0.0f64; 2]);
             for (t, triangle) in triangles.iter().enumerate() {
@@ -111,7 +111,7 @@ impl Recognized {
         Some(lattice)
     }
 
-    /// The grid of particles whose columns and rows are known but for where they begin.
+    /// Grid of the particles, from their columns and rows counted from any origin.
     fn from_places(places: &[[i32; 2]]) -> Option<Self> {
         let first = *places.first()?;
         let (mut low, mut high) = (first, first);
@@ -145,7 +145,7 @@ impl Recognized {
         })
     }
 
-    /// The length of the edges along rows and of those along columns \[m\], where they are the same everywhere.
+    /// Length of the edges along rows and of those along columns \[m\], where they are the same everywhere.
     fn edge_lengths(&self, rest_positions: &[Vec3]) -> Option<[f32; 2]> {
         let at = |slot: usize| rest_positions[self.order[slot] as usize];
         let mut lengths = [0.0; 2];
@@ -174,7 +174,7 @@ impl Recognized {
         Some(lengths)
     }
 
-    /// Turns the grid by a quarter, so that rows follow one another along what was +x.
+    /// Turns the grid by a quarter, so that rows follow one another along the direction that was +x.
     fn turn(&mut self) {
         let (columns, rows) = (self.rows, self.columns);
         self.order = (0..rows * columns)
@@ -188,7 +188,7 @@ impl Recognized {
     }
 }
 
-/// The cells of a mesh each of whose triangles has a right angle and shares the side opposite to it with another one.
+/// Cells of a mesh each of whose triangles has a right angle and shares the side opposite to it with another one.
 fn quads(rest_positions: &[Vec3], triangles: &[[u32; 3]], edges: &MeshEdges) -> Option<Vec<Quad>> {
     let apexes: Vec<usize> = triangles
         .iter()
@@ -224,7 +224,7 @@ fn quads(rest_positions: &[Vec3], triangles: &[[u32; 3]], edges: &MeshEdges) -> 
     Some(quads)
 }
 
-/// The corner at which a triangle has its right angle.
+/// Corner at which a triangle has its right angle.
 fn right_angle(corners: [Vec3; 3]) -> Option<usize> {
     let mut best = None;
     let mut smallest = RIGHT_ANGLE;
@@ -238,8 +238,8 @@ fn right_angle(corners: [Vec3; 3]) -> Option<usize> {
     best
 }
 
-/// The column and row of each particle, counted from a corner of the first quad; `None` where two ways to a particle
-/// disagree, or a side joins more than two quads or two that face opposite ways.
+/// Column and row of each particle, counted from a corner of the first quad; `None` where two paths to a particle disagree, or a side joins
+/// more than two quads or two that face opposite ways.
 fn place(
     particles: usize,
     triangles: usize,

@@ -1,62 +1,76 @@
-//! From the triangles that are given to those that can be simulated.
+//! Repair of a mesh: from the triangles of the source to those that can be simulated.
 
 use std::collections::{HashMap, hash_map::Entry};
 
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 
 use super::{
     mesh_edges::MeshEdges,
     orientation::Orientation,
-    report::{Island, MeshReport},
+    report::{ClothMeshReport, Island},
     weld::weld,
 };
-use crate::error::ShapeError;
+use crate::error::ClothShapeError;
 
-/// A triangle whose area is below this part of its longest edge squared counts as degenerate.
+/// Ratio of a triangle's area to the square of its longest edge below which it counts as degenerate.
 const DEGENERATE: f32 = 1e-6;
 
-/// A triangle whose longest edge is shorter than this \[m\] counts as degenerate.
+/// Length of a triangle's longest edge \[m\] below which it counts as degenerate.
 const SHORTEST: f32 = 1e-6;
 
-/// A triangle of the mesh with the three corners of one before.
+/// A triangle of the mesh that has the three corners of an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TriangleCopy {
-    /// Which one it is in the mesh.
+    /// Index of the copy in the mesh.
     pub source: u32,
-    /// The triangle that is simulated.
+    /// Triangle that is simulated.
     pub triangle: u32,
-    /// Whether the copy faces the other way.
+    /// True if the copy faces the other way.
     pub back: bool,
 }
 
-/// A mesh without what cannot be simulated. Particles are in the order of the first vertex of each.
+/// A mesh that can be simulated. Particles are in the order of the first vertex of each.
 #[derive(Clone, Debug, Default)]
 pub struct Repaired {
-    /// Where the particles are, in the entity's own space \[m\].
+    /// Positions of the particles, in the entity's own space \[m\].
     pub positions: Vec<Vec3>,
-    /// For each vertex its particle. For an isolated one it is a particle of its triangle, else the first.
+    /// Particle of each vertex. For an isolated vertex it is a particle of its triangle, else the first.
     pub particle_of_vertex: Vec<u32>,
-    /// The vertices of no triangle with an area, ascending.
+    /// Vertices of no triangle with an area, ascending.
     pub isolated: Vec<u32>,
     /// Particles at the corners of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// For each triangle which one of the mesh it is.
+    /// Index of each triangle in the mesh.
     pub source_triangles: Vec<u32>,
-    /// The triangles of the mesh that are turned around, and the copies of those, ascending.
+    /// Triangles of the mesh that are turned around, and their copies, ascending.
     pub turned: Vec<u32>,
-    /// The triangles of the mesh that are there twice, ascending.
+    /// Triangles of the mesh that are there twice, ascending.
     pub copies: Vec<TriangleCopy>,
-    /// The edges of `triangles`.
+    /// Edges of `triangles`.
     pub edges: MeshEdges,
-    /// What was found.
-    pub report: MeshReport,
+    /// Findings.
+    pub report: ClothMeshReport,
 }
 
 impl Repaired {
+    /// Texture coordinates at the corners of each triangle, of a mesh with these indices and these coordinates of its vertices.
+    pub fn corner_uvs(&self, indices: &[u32], uvs: &[Vec2]) -> Vec<[Vec2; 3]> {
+        let source = self.triangles.iter().zip(&self.source_triangles);
+        let corners = source.map(|(particles, source)| {
+            let vertices = &indices[3 * *source as usize..][..3];
+            particles.map(|particle| {
+                let is_there = |v: &&u32| self.particle_of_vertex[**v as usize] == particle;
+                let vertex = vertices.iter().find(is_there);
+                vertex.map_or(Vec2::NAN, |vertex| uvs[*vertex as usize])
+            })
+        });
+        corners.collect()
+    }
+
     /// Welds the vertices that are no further apart than `weld_distance` \[m\], leaves out triangles that are degenerate (in the
     /// entity's own space or scaled) or there already, and turns around those that face the wrong way.
     ///
-    /// The numbers of the particles do not depend on the scale.
+    /// The indices of the particles do not depend on the scale.
     ///
     /// # Panics
     /// When an index is not below the number of positions.
@@ -79,7 +93,7 @@ impl Repaired {
         repaired
     }
 
-    /// The weights of the particles, given those of the vertices.
+    /// Weights of the particles, from those of the vertices.
     pub fn weights(&self, weight_of_vertex: &[f32]) -> Vec<f32> {
         let mut weight_of_vertex = weight_of_vertex.to_vec();
         for &vertex in &self.isolated {
@@ -91,18 +105,18 @@ impl Repaired {
         of_particles(particles, &self.particle_of_vertex, &weight_of_vertex)
     }
 
-    /// What was left out of the simulation though it was meant to be part of it.
-    pub(super) fn dropped(&self) -> Vec<ShapeError> {
+    /// Triangles and vertices that were left out of the simulation though they were meant to be part of it.
+    pub(super) fn dropped(&self) -> Vec<ClothShapeError> {
         let (degenerate, duplicate) = (self.report.degenerate, self.report.duplicate);
         let mut dropped = Vec::new();
         if degenerate.is_some() {
-            dropped.push(ShapeError::DegenerateTriangles {
+            dropped.push(ClothShapeError::DegenerateTriangles {
                 count: degenerate.count,
                 first: degenerate.first as usize,
             });
         }
         if duplicate.is_some() {
-            dropped.push(ShapeError::DuplicateTriangles {
+            dropped.push(ClothShapeError::DuplicateTriangles {
                 count: duplicate.count,
                 first: duplicate.first as usize,
             });
@@ -127,7 +141,7 @@ impl Repaired {
         }
     }
 
-    /// Fills in the triangles, and tells which particles they use.
+    /// Fills in the triangles, and returns which particles they use.
     fn take_triangles(&mut self, indices: &[u32], scale: Vec3) -> Vec<bool> {
         let mut report = std::mem::take(&mut self.report);
         let mut used = vec![false; self.positions.len()];
@@ -173,7 +187,7 @@ impl Repaired {
         used
     }
 
-    /// Leaves out the particles that are not `used`, and numbers the others again.
+    /// Leaves out the particles that are not `used`, and renumbers the others.
     fn leave_out_isolated(&mut self, positions: &[Vec3], indices: &[u32], used: &[bool]) {
         for (vertex, &particle) in self.particle_of_vertex.iter().enumerate() {
             if !used[particle as usize] {
@@ -192,7 +206,7 @@ impl Repaired {
         for (next, (number, _)) in (0..).zip(in_use) {
             *number = next;
         }
-        // The vertices of slivers stay with the cloth, so that what they fill stays filled.
+        // The vertices of slivers stay with the cloth, so that the area that these fill stays filled.
         let mut beside = vec![0; used.len()];
         for corners in indices.as_chunks::<3>().0 {
             let triangle = corners.map(|v| self.particle_of_vertex[v as usize] as usize);
@@ -253,7 +267,7 @@ impl Repaired {
         }
     }
 
-    /// The first triangle of an edge, as the mesh numbers them, and the middle of the edge.
+    /// First triangle of an edge, as the mesh numbers them, and the middle of the edge.
     fn place_of_edge(&self, edge: u32) -> (u32, Vec3) {
         let [a, b] = self.edges.ends[edge as usize].map(|i| self.positions[i as usize]);
         let first = self
@@ -298,7 +312,7 @@ impl Repaired {
     }
 }
 
-/// Whether a triangle has no area to speak of, or its longest edge is shorter than `shortest` \[m\].
+/// Returns whether a triangle has no area to speak of, or its longest edge is shorter than `shortest` \[m\].
 fn is_degenerate([a, b, c]: [Vec3; 3], shortest: f32) -> bool {
     let longest = (b - a)
         .length_squared()
@@ -308,7 +322,7 @@ fn is_degenerate([a, b, c]: [Vec3; 3], shortest: f32) -> bool {
     area.is_nan() || area <= DEGENERATE * longest || longest < shortest * shortest
 }
 
-/// Whether two triangles with the same corners name them in the same circle.
+/// Returns whether two triangles with the same corners name them in the same cyclic order.
 fn is_rotated(a: [u32; 3], b: [u32; 3]) -> bool {
     (0..3).any(|k| [b[k], b[(k + 1) % 3], b[(k + 2) % 3]] == a)
 }
@@ -317,8 +331,8 @@ fn is_rotated(a: [u32; 3], b: [u32; 3]) -> bool {
 #[path = "repair_tests.rs"]
 mod tests;
 
-/// The weights of particles from those of vertices, given the particle of each vertex: the greatest counts. Weights that are not
-/// numbers count as 0.
+/// Weights of particles from those of vertices, by the particle of each vertex: the greatest counts. Weights that are not numbers count as
+/// 0.
 fn of_particles(
     particles: usize,
     particle_of_vertex: &[u32],

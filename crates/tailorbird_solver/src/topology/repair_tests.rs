@@ -144,21 +144,22 @@ fn what_is_too_far_or_too_small_to_count_is_refused() {
         ClothShape::Mesh {
             positions,
             indices,
+            uvs: Vec::new(),
             weld_distance: 0.0,
         }
     };
     let error = |size, scale| Topology::build(&mesh(size), Vec3::splat(scale)).err();
     assert!(matches!(
         error(1e7, 1.0),
-        Some(ShapeError::PositionTooFar { vertex: 1, .. })
+        Some(ClothShapeError::PositionTooFar { vertex: 1, .. })
     ));
     assert!(matches!(
         error(1.0, 1e7),
-        Some(ShapeError::PositionTooFar { .. })
+        Some(ClothShapeError::PositionTooFar { .. })
     ));
     assert!(matches!(
         error(1e-7, 1.0),
-        Some(ShapeError::NoTriangles { .. })
+        Some(ClothShapeError::NoTriangles { .. })
     ));
     assert_eq!(error(1e-3, 1.0), None);
     assert_eq!(error(1e5, 1.0), None);
@@ -172,7 +173,7 @@ fn a_grid_with_a_loose_vertex_is_still_recognised() {
     let mut positions = grid.rest_positions();
     positions.push(Vec3::splat(2.0));
     let topology = Topology::build(&ClothShape::mesh(positions, indices), Vec3::ONE);
-    assert!(topology.expect("valid").lattice.is_some());
+    assert!(topology.expect("valid").lattice().is_some());
 }
 
 proptest! {

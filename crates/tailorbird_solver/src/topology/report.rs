@@ -1,14 +1,14 @@
-//! What was found in a mesh, and where.
+//! Findings in a mesh, and their places.
 
 use std::fmt;
 
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 
-/// What was found in the mesh of a cloth when its [`Topology`](super::Topology) was built. Its `Display` is a line for each
+/// Findings in the mesh of a cloth, collected when its [`Topology`](super::Topology) was built. Its `Display` is a line for each
 /// finding.
 ///
-/// | finding | what becomes of it |
+/// | finding | treatment |
 /// | --- | --- |
 /// | [`welded`](Self::welded) | one particle moves all vertices at a place; each keeps its UV, colour and so on |
 /// | [`isolated`](Self::isolated) | has no particle |
@@ -20,22 +20,22 @@ use bevy_reflect::prelude::*;
 /// | [`non_manifold`](Self::non_manifold) | simulated; bending is resisted between the two triangles that lie flattest, then between the next two, and none that are folded by more than 60° or of more than eight |
 /// | [`islands`](Self::islands) | simulated as one cloth |
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
-pub struct MeshReport {
-    /// How many vertices the mesh has.
+pub struct ClothMeshReport {
+    /// Number of vertices of the mesh.
     pub vertices: usize,
-    /// How many triangles the mesh has.
+    /// Number of triangles of the mesh.
     pub triangles: usize,
-    /// How many particles it became.
+    /// Number of particles of the cloth.
     pub particles: usize,
-    /// Vertices that share the particle of one before.
+    /// Vertices that share the particle of an earlier one.
     pub welded: Finding,
-    /// Vertices that no triangle uses that has an area.
+    /// Vertices that belong to no triangle with an area.
     pub isolated: Finding,
     /// Triangles without area: of fewer than three particles, or with corners in a line, or smaller than a micrometre.
     pub degenerate: Finding,
-    /// Triangles with the corners of one before, that face the same way.
+    /// Triangles that have the corners of an earlier one, and face the same way.
     pub duplicate: Finding,
-    /// Triangles with the corners of one before, that face the other way: the backs of double-sided faces.
+    /// Triangles that have the corners of an earlier one, and face the other way: the backs of double-sided faces.
     pub backs: Finding,
     /// Triangles that faced another way than most of their island.
     pub turned: Finding,
@@ -43,31 +43,31 @@ pub struct MeshReport {
     pub one_sided: Finding,
     /// Edges of more than two triangles.
     pub non_manifold: Finding,
-    /// How many edges are those of one triangle; a closed surface has none.
+    /// Number of edges that belong to one triangle; a closed surface has none.
     pub border_edges: usize,
-    /// The pieces that no particle joins, in the order of their first triangles.
+    /// Pieces that no particle joins, in the order of their first triangles.
     pub islands: Vec<Island>,
 }
 
-/// How often something was found, and where first.
+/// Number of occurrences of something, and the place of the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct Finding {
-    /// How often.
+    /// Number of occurrences.
     pub count: usize,
-    /// The first vertex or, for triangles and edges, the first triangle, as the mesh numbers them.
+    /// First vertex or, for triangles and edges, first triangle, as the mesh numbers them.
     pub first: u32,
-    /// Where that vertex is, or the middle of that triangle or edge, in the entity's own space \[m\].
+    /// Position of that vertex, or the middle of that triangle or edge, in the entity's own space \[m\].
     pub at: Vec3,
 }
 
 /// A piece of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct Island {
-    /// How many triangles it has.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Its first triangle, as the mesh numbers them.
+    /// First triangle of the piece, as the mesh numbers them.
     pub first: u32,
-    /// The middle of that triangle, in the entity's own space \[m\].
+    /// Middle of that triangle, in the entity's own space \[m\].
     pub at: Vec3,
 }
 
@@ -79,14 +79,14 @@ impl Finding {
         self.count += 1;
     }
 
-    /// Whether it was found at all.
+    /// Returns whether it was found at all.
     pub fn is_some(&self) -> bool {
         self.count > 0
     }
 }
 
-impl MeshReport {
-    /// Whether the triangles are those of the mesh, as they were, and form a surface with two sides.
+impl ClothMeshReport {
+    /// Returns whether the triangles are those of the mesh, unchanged, and form a surface with two sides.
     pub fn is_clean(&self) -> bool {
         let found = [
             self.degenerate,
@@ -100,7 +100,7 @@ impl MeshReport {
     }
 }
 
-impl fmt::Display for MeshReport {
+impl fmt::Display for ClothMeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,

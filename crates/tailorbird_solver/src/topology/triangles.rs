@@ -1,4 +1,4 @@
-//! The triangles of a cloth: a list, or the cells of a grid, which need none.
+//! Triangles of a cloth: a list, or the cells of a grid, which need none.
 
 use bevy_math::UVec2;
 
@@ -17,12 +17,12 @@ impl<'a> Triangles<'a> {
         Self(Source::List(list))
     }
 
-    /// Those of a grid of so many columns and rows, at least 2 each.
+    /// Triangles of a grid of so many columns and rows, at least 2 each.
     pub(super) fn of_grid(size: UVec2) -> Self {
         Self(Source::Grid(size))
     }
 
-    /// How many there are.
+    /// Number of triangles.
     #[inline]
     pub fn len(self) -> usize {
         match self.0 {
@@ -31,13 +31,13 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
 
-    /// The corners of one; none where it is out of range.
+    /// Corners of a triangle; `None` where it is out of range.
     #[inline]
     pub fn get(self, triangle: usize) -> Option<[u32; 3]> {
         match self.0 {
@@ -46,7 +46,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// All of them, in order.
+    /// All triangles, in order.
     #[inline]
     pub fn iter(self) -> impl ExactSizeIterator<Item = [u32; 3]> + Clone + use<'a> {
         (0..self.len()).map(move |triangle| match self.0 {
@@ -56,7 +56,7 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// Two triangles for each cell. The diagonals mirror at the middle of the sheet and run through its corners, so that the
+/// Triangle of a grid, two for each cell. The diagonals mirror at the middle of the sheet and run through its corners, so that the
 /// triangles are as symmetric as the grid allows, and with them masses, wind and shading.
 #[inline]
 fn of_cell(size: UVec2, triangle: u32) -> [u32; 3] {

@@ -1,9 +1,9 @@
-//! Warp and weft: the directions of the threads on a triangle mesh, and which edges follow them.
+//! Warp and weft: the directions of the threads on a triangle mesh, and the edges that follow them.
 //!
-//! Woven cloth hardly stretches along its threads and shears easily, so an edge's stiffness depends on how it lies to
-//! them. In each triangle's plane a direction is a complex number relative to the triangle's first side. Its square is
-//! the same for both ends of a line, its fourth power the same for warp and weft: sums of fourth powers average
-//! directions modulo 90° (N-symmetry fields, as in Palacios & Zhang 2007, Rotational Symmetry Field Design on Surfaces).
+//! Woven cloth hardly stretches along its threads and shears easily, so an edge's stiffness depends on its angle to them. In each
+//! triangle's plane a direction is a complex number relative to the triangle's first side. Its square is the same for both ends of a line,
+//! its fourth power the same for warp and weft: sums of fourth powers average directions modulo 90° (N-symmetry fields, as in Palacios &
+//! Zhang 2007, Rotational Symmetry Field Design on Surfaces).
 
 use bevy_math::{Vec2, Vec3};
 
@@ -12,69 +12,69 @@ use super::mesh_edges::MeshEdges;
 mod frame;
 mod gaps;
 
-use frame::{Frame, along_v, conjugate, root, square};
+use frame::{TriangleFrame, along_v, conjugate, root, square};
 
-/// The cosine of four times the angle to the nearest axis up to which an edge follows a thread: 27.5°.
+/// Cosine of four times the largest angle to the nearest axis at which an edge follows a thread: 27.5°.
 ///
-/// Below 30°, so that an equilateral mesh is not all threads and no shear; as near to it as jitter allows, because
-/// around a particle of an irregular mesh edges lie 60° apart on average, and each of the four directions should find
-/// one. Diagonals of cells of any aspect are told by their right angle instead.
+/// Below 30°, so that an equilateral mesh is not all threads and no shear; as near to it as jitter allows, because around a particle of an
+/// irregular mesh edges lie 60° apart on average, and each of the four directions should find one. Diagonals of cells of any aspect are
+/// told by their right angle instead.
 const ALIGNED: f32 = -0.342;
 
-/// How strongly the parts of an average must agree for it to mean something. 1 is full agreement.
+/// Least agreement of the parts of an average for it to mean something. 1 is full agreement.
 const COHERENT: f32 = 0.2;
 
-/// The cosine of four times the angle by which the threads of adjacent triangles may differ where the mesh counts as
-/// unrolled without distortion: 10°.
+/// Cosine of four times the largest angle between the threads of adjacent triangles at which the mesh counts as unrolled without
+/// distortion: 10°.
 const DEVELOPABLE: f32 = 0.766;
 
-/// Passes over a curved mesh that smooth its threads.
+/// Number of passes over a curved mesh that smooth its threads.
 const SWEEPS: usize = 8;
 
-/// What an edge follows.
+/// Threads that an edge follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EdgeFamily {
-    /// The threads along v.
+    /// Threads along v.
     Warp,
-    /// The threads along u.
+    /// Threads along u.
     Weft,
-    /// Neither.
+    /// Neither warp nor weft.
     Shear,
 }
 
-/// The threads on a triangle mesh.
+/// Threads on a triangle mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Weave {
-    /// The unit direction of the warp in the plane of each triangle, either way. The weft is perpendicular to it.
+    /// Unit direction of the warp in the plane of each triangle, either way. The weft is perpendicular to it.
     pub warp: Vec<Vec3>,
     /// Particles at the ends of each edge, the lower first. Ascending.
     pub ends: Vec<[u32; 2]>,
-    /// What each edge follows.
+    /// Threads that each edge follows.
     pub family: Vec<EdgeFamily>,
-    /// L²/(A₁ + A₂) of each edge \[-\], with its length and the areas of its triangles. The compliance of its spring is
-    /// that of the membrane \[m/N\] times this.
+    /// L²/(A₁ + A₂) of each edge \[-\], with its length and the areas of its triangles. The compliance of its spring is that of the
+    /// membrane \[m/N\] times this.
     pub scale: Vec<f32>,
-    /// The square of the cosine of the angle between each edge and the warp [-].
+    /// Square of the cosine of the angle between each edge and the warp [-].
     pub along_warp: Vec<f32>,
 }
 
 impl Weave {
-    /// The threads of a mesh without degenerate triangles, whose edges are `edges`.
+    /// Threads of a mesh without degenerate triangles, whose edges are `edges`.
     ///
-    /// With texture coordinates (`uvs`, at the corners of each triangle) the warp is the direction in which u is
-    /// constant. Else it is what most edges suggest that are no diagonals of cells, modulo 90°: one direction on each
-    /// piece of the mesh that unrolls into a plane, a smooth field that follows the edges on others. Where the edges
-    /// show no direction, the border counts, then the vertical. The more vertical thread is the warp.
+    /// With texture coordinates (`uvs`, at the corners of each triangle) the warp is the direction in which u is constant. Else it is the
+    /// direction of most edges that are no diagonals of cells, modulo 90°: one direction on each piece of the mesh that unrolls into a
+    /// plane, a smooth field that follows the edges on others. Where the edges show no direction, the border counts, then the vertical. The
+    /// more vertical thread is the warp.
     pub fn new(
         rest_positions: &[Vec3],
         triangles: &[[u32; 3]],
         edges: &MeshEdges,
         uvs: Option<&[[Vec2; 3]]>,
     ) -> Self {
-        let surface = Surface {
+        let surface = FramedMesh {
             frames: triangles
                 .iter()
-                .map(|t| Frame::new(t.map(|i| rest_positions[i as usize])))
+                .map(|t| TriangleFrame::new(t.map(|i| rest_positions[i as usize])))
                 .collect(),
             triangles,
             edges,
@@ -135,28 +135,28 @@ impl Weave {
     }
 }
 
-/// How an edge lies to the threads.
+/// Angles of an edge to the threads.
 #[derive(Clone, Copy, Debug)]
 struct Leaning {
-    /// The cosine of four times the angle to the nearest of them; −1 for a diagonal of cells whose sides follow them.
+    /// Cosine of four times the angle to the nearest thread; −1 for a diagonal of cells whose sides follow the threads.
     alignment: f32,
-    /// Which one that is.
+    /// The nearest thread.
     family: EdgeFamily,
-    /// The cosine of twice the angle to the warp.
+    /// Cosine of twice the angle to the warp.
     upright: f32,
 }
 
 /// A step from one triangle to the next: the side that is left and the side that is entered.
 type Step = [u32; 2];
 
-struct Surface<'a> {
-    frames: Vec<Frame>,
+struct FramedMesh<'a> {
+    frames: Vec<TriangleFrame>,
     triangles: &'a [[u32; 3]],
     edges: &'a MeshEdges,
 }
 
-impl Surface<'_> {
-    /// The square of the warp's direction in each triangle. `given` is the warp in some of them.
+impl FramedMesh<'_> {
+    /// Square of the warp's direction in each triangle. `given` is the warp in some of them.
     fn threads(&self, given: impl Fn(usize) -> Option<Vec3>) -> Vec<Vec2> {
         let mut threads = vec![Vec2::X; self.frames.len()];
         let mut seen = vec![false; self.frames.len()];
@@ -182,7 +182,7 @@ impl Surface<'_> {
         threads
     }
 
-    /// The steps that lead to all triangles not `seen` yet, nearest first.
+    /// Steps that lead to all triangles not `seen` yet, nearest first.
     fn walk(&self, mut queue: Vec<u32>, seen: &mut [bool]) -> Vec<Step> {
         let mut steps = Vec::new();
         let mut next = 0;
@@ -211,7 +211,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The threads of one piece of the mesh, from its edges. `crosses` is scratch for their fourth powers.
+    /// Estimates the threads of one piece of the mesh from its edges. `crosses` is scratch for their fourth powers.
     fn estimate(&self, first: usize, steps: &[Step], crosses: &mut [Vec2], threads: &mut [Vec2]) {
         let piece = || std::iter::once(first).chain(steps.iter().map(|step| step[1] as usize / 3));
         let mut average = |local: &dyn Fn(usize) -> (Vec2, f32)| {
@@ -270,8 +270,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The lowest cosine of four times the angle between the threads of a triangle and those of the ones around it that
-    /// come later.
+    /// Lowest cosine of four times the angle between the threads of a triangle and those of its neighbours with higher indices.
     fn disagreement(&self, t: usize, crosses: &[Vec2]) -> f32 {
         let mut lowest = 1.0f32;
         for side in 3 * t as u32..3 * t as u32 + 3 {
@@ -310,7 +309,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The sum of the fourth powers of the sides of a triangle but for a diagonal, and its greatest possible length.
+    /// Sum of the fourth powers of the sides of a triangle but for a diagonal, and its greatest possible length.
     fn edges_at(&self, t: usize) -> (Vec2, f32) {
         let frame = &self.frames[t];
         let sides = (0..3).filter(|k| frame.diagonal != Some(*k));
@@ -320,7 +319,7 @@ impl Surface<'_> {
         })
     }
 
-    /// Likewise of the sides that lie on the border.
+    /// Sum of the fourth powers of the sides that lie on the border, and its greatest possible length.
     fn border_at(&self, t: usize) -> (Vec2, f32) {
         let border = |k: &usize| self.edges.across((3 * t + k) as u32).next().is_none();
         let frame = &self.frames[t];
@@ -332,13 +331,13 @@ impl Surface<'_> {
             })
     }
 
-    /// Likewise of an axis.
+    /// Fourth power of an axis, and its greatest possible length.
     fn axis_at(&self, t: usize, axis: Vec3) -> (Vec2, f32) {
         let frame = &self.frames[t];
         (frame.area * square(square(frame.project(axis))), frame.area)
     }
 
-    /// How an edge lies to the threads: the mean over its triangles.
+    /// Mean over its triangles of the angles of an edge to the threads.
     fn leaning(&self, sides: &[u32], threads: &[Vec2]) -> Leaning {
         let (mut alignment, mut upright) = (0.0, 0.0);
         for &side in sides {
@@ -364,11 +363,11 @@ impl Surface<'_> {
     }
 }
 
-fn square_of(surface: &Surface, side: u32) -> Vec2 {
+fn square_of(surface: &FramedMesh, side: u32) -> Vec2 {
     surface.frames[side as usize / 3].sides[side as usize % 3]
 }
 
-fn fourth_of(surface: &Surface, side: u32) -> Vec2 {
+fn fourth_of(surface: &FramedMesh, side: u32) -> Vec2 {
     square(square_of(surface, side))
 }
 

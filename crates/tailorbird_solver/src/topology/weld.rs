@@ -6,16 +6,15 @@ use bevy_math::Vec3;
 
 /// Vertices joined by position.
 pub struct Welded {
-    /// One for each particle, that of the first vertex there.
+    /// Position of each particle: that of its first vertex.
     pub positions: Vec<Vec3>,
-    /// For each vertex its particle.
+    /// Particle of each vertex.
     pub particle_of_vertex: Vec<u32>,
 }
 
-/// Joins each vertex to the first one before it that is no further than `distance` \[m\] away.
+/// Joins each vertex to the first earlier one that is no further than `distance` \[m\] away.
 ///
-/// Vertices are sorted into cubes of that size and looked up in the 27 around them: linear time, and the same result
-/// every time.
+/// Vertices are sorted into cubes of that size and looked up in the 27 around them: linear time, and the same result every time.
 pub fn weld(positions: &[Vec3], distance: f32) -> Welded {
     let size = f64::from(distance.max(f32::MIN_POSITIVE));
     let cell = |p: Vec3| p.as_dvec3().to_array().map(|v| (v / size).floor());

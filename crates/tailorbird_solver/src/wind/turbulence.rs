@@ -5,26 +5,26 @@ use std::f32::consts::PI;
 use bevy_math::{DVec3, Vec3};
 use bevy_reflect::prelude::*;
 
-/// How air swirls: a velocity without divergence, with the spectrum of real turbulence (Kolmogorov's k^(−5/3)) from eddies of
+/// Swirling air: a velocity without divergence, with the spectrum of real turbulence (Kolmogorov's k^(−5/3)) from eddies of
 /// [`scale`](Self::scale) to those of a sixteenth of it, carried along by the wind while they change.
 ///
-/// It depends on the place, simulated time and the seed alone, and is smooth in both.
+/// It depends on the place, simulated time and the seed alone, and is smooth in the first two.
 ///
 /// It is a sum of plane waves across their own direction (kinematic simulation: Kraichnan 1970, Fung et al. 1992).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
-pub struct Turbulence {
+pub struct ClothTurbulence {
     /// Root mean square of the speed that it adds [m/s]; 0 is none.
     pub speed: f32,
     /// Size of the largest eddies \[m\].
     pub scale: f32,
-    /// Which of all possible ones.
+    /// Seed of its random waves.
     pub seed: u32,
 }
 
-impl Default for Turbulence {
+impl Default for ClothTurbulence {
     fn default() -> Self {
         Self {
             speed: 0.0,
@@ -34,30 +34,30 @@ impl Default for Turbulence {
     }
 }
 
-/// How many waves turbulence is made of.
+/// Number of waves that make up the turbulence.
 pub const WAVES: usize = 16;
 
-/// The ratio of the largest eddies to the smallest.
+/// Ratio of the largest eddies to the smallest.
 const SIZES: f32 = 16.0;
 
 /// A plane wave: velocity = amplitude · sin(2π (turns · p + phase)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wave {
-    /// Across `turns` [m/s].
+    /// Amplitude, across `turns` [m/s].
     pub amplitude: Vec3,
-    /// Its direction, times waves per length [1/m].
+    /// Direction, times waves per length [1/m].
     pub turns: Vec3,
-    /// At the origin, in turns: 0 to 1.
+    /// Phase at the origin, in turns: 0 to 1.
     pub phase: f32,
 }
 
-impl Turbulence {
-    /// Whether there is any.
+impl ClothTurbulence {
+    /// Returns whether there is any.
     pub fn is_some(&self) -> bool {
         self.speed > 0.0
     }
 
-    /// Its waves at a time \[s\], when the wind has carried them so far \[m\].
+    /// Waves at a time \[s\], after the wind has carried them by `drift` \[m\].
     pub fn waves(&self, seconds: f64, drift: DVec3) -> [Wave; WAVES] {
         let mut random = Random::new(self.seed);
         let mut waves = [Wave::default(); WAVES];
@@ -72,7 +72,7 @@ impl Turbulence {
             let size = (k * self.scale).powf(-1.0 / 3.0);
             sum += 0.5 * size * size;
             let start = random.unit();
-            // An eddy turns over in about the time in which its own speed goes along it.
+            // An eddy turns over in about the time that its own speed takes to cross it.
             let rate = f64::from(0.5 * k * size * self.speed);
             let turns = along * k;
             let phase = f64::from(start) - turns.as_dvec3().dot(drift) - rate * seconds;
@@ -90,10 +90,10 @@ impl Turbulence {
     }
 }
 
-/// A sine of so many turns, to 0.1 % of its amplitude: two parabolas, and their squares to round them.
+/// Sine of so many turns, to 0.1 % of its amplitude: two parabolas, and their squares to round them.
 ///
-/// The same bits everywhere, which `sin` of the system does not give; and without divergence whatever its error, as each wave
-/// is across its own direction.
+/// It has the same bits everywhere, unlike `sin` of the system; and is without divergence whatever its error, as each wave is across its
+/// own direction.
 pub fn sine(turns: f32) -> f32 {
     let t = turns - (turns + 0.5).floor();
     let s = 8.0 * t - 16.0 * t * t.abs();
@@ -108,7 +108,7 @@ impl Random {
         Self(u64::from(seed))
     }
 
-    /// 0 to 1.
+    /// Random number from 0 to 1.
     fn unit(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -116,7 +116,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 40) as f32 / (1_u32 << 24) as f32
     }
 
-    /// Every direction alike.
+    /// Random direction, all alike.
     fn direction(&mut self) -> Vec3 {
         let up = 2.0 * self.unit() - 1.0;
         let around = (1.0 - up * up).max(0.0).sqrt();

@@ -1,4 +1,4 @@
-//! Which triangle of which cloth is at a point.
+//! Search for the triangle of a cloth at a point.
 
 use bevy_camera::visibility::{RenderLayers, ViewVisibility};
 use bevy_ecs::{prelude::*, query::QueryData};
@@ -9,11 +9,11 @@ use tailorbird_cloth::prelude::*;
 
 use super::{super::ClothPointerHit, view::VisiblePoint};
 
-/// How far from the cloth's surface a visible point may be and still belong to it, as a fraction of the edges there. Room
-/// for rounding: what touches the cloth from the other side is hidden by it.
+/// Largest distance of a visible point from the cloth's surface, as a fraction of the edges there. Room for rounding: things that touch the
+/// cloth from the other side are hidden by it.
 const TOLERANCE: f32 = 0.25;
 
-/// What is read of a cloth.
+/// Components of a cloth that are read.
 #[derive(QueryData)]
 pub(super) struct Cloths {
     entity: Entity,

@@ -1,4 +1,4 @@
-//! What the main world asks, and what the render world answers.
+//! Questions of the main world, and answers of the render world.
 
 use std::{
     mem,
@@ -11,7 +11,7 @@ use bevy_picking::backend::ray::RayId;
 
 use super::view::VisiblePoint;
 
-/// What is visible there?
+/// Question for the visible point at a place of the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Question {
     /// Pointer and camera.
@@ -28,7 +28,7 @@ pub(super) struct Question {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     pub question: Question,
-    /// What is visible; `None` where nothing was drawn.
+    /// Visible point; `None` if nothing was drawn.
     pub point: Option<VisiblePoint>,
 }
 

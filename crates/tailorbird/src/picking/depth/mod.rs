@@ -5,7 +5,7 @@
 //! point that it shows ([`render`], [`view`]). The nearest triangle of a cloth to that point is the hit ([`locate`]); it
 //! is sent each frame, wherever the triangle has moved, until the next answer comes or the pointer leaves the camera.
 //!
-//! What is not in the depth prepass is not seen: transparent materials, and cloth behind anything that is in it.
+//! Objects outside the depth prepass are not seen: transparent materials, and cloth behind anything that is in it.
 
 mod locate;
 mod mailbox;
@@ -64,7 +64,7 @@ struct Latest {
     first: u64,
     /// When the question was asked, and the cloth that was found.
     answers: HashMap<RayId, (u64, Option<Located>)>,
-    /// Whether a camera without a prepass was reported.
+    /// True if a camera without a prepass was reported.
     reported: bool,
 }
 

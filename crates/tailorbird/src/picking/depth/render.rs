@@ -67,7 +67,7 @@ pub(super) fn build(app: &mut App, mailbox: Mailbox) -> bool {
     true
 }
 
-/// What is to be answered in this frame. Empty unless the depth backend is in use.
+/// Questions of this frame. Empty unless the depth backend is in use.
 #[derive(Resource, Default)]
 struct Questions(Vec<Question>);
 
@@ -75,7 +75,7 @@ fn any_questions(questions: Res<Questions>) -> bool {
     !questions.0.is_empty()
 }
 
-/// What the pass needs. Belongs to one device, and is made anew for a new one.
+/// Resources of the pass. They belong to one device, and are made anew for a new one.
 #[derive(Resource)]
 struct DepthReader {
     single: DepthPipeline,
@@ -106,7 +106,7 @@ struct Pool {
     made: usize,
 }
 
-/// What is asked of one camera in one frame.
+/// Questions to one camera in one frame.
 struct Batch {
     slot: Slot,
     view: View,

@@ -1,14 +1,14 @@
-//! Where in the world a texel of the depth texture is.
+//! World positions of texels of the depth texture.
 
 use bevy_math::{Mat4, UVec2, Vec2, Vec3};
 use bevy_transform::components::GlobalTransform;
 
-/// How a camera saw the world in one frame.
+/// View of a camera in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     /// Projection, inverted.
     pub view_from_clip: Mat4,
-    /// Where the camera was.
+    /// Transform of the camera.
     pub world_from_view: GlobalTransform,
     /// Upper left corner of the viewport in the texture \[texels\].
     pub origin: UVec2,
@@ -21,7 +21,7 @@ pub(super) struct View {
 pub(super) struct VisiblePoint {
     /// Where, in the world \[m\].
     pub position: Vec3,
-    /// How wide the texel is there \[m\].
+    /// Width of the texel there \[m\].
     pub texel_width: f32,
 }
 
@@ -40,10 +40,10 @@ impl View {
         Some(at.as_uvec2().min(self.size - 1))
     }
 
-    /// What is visible in a texel of the viewport, from the median and the mean depth of its samples.
+    /// Visible point in a texel of the viewport, from the median and the mean depth of its samples.
     ///
-    /// Depth is linear on the screen, so where all samples show the same surface their mean is its depth in the middle of
-    /// the texel, while a single one is off by up to half a texel times the slope. At an outline the mean means nothing.
+    /// Depth is linear on the screen. So if all samples show the same surface, their mean is its depth in the middle of the texel, while a
+    /// single one is off by up to half a texel times the slope. At an outline the mean means nothing.
     pub fn visible(&self, texel: UVec2, median: f32, mean: f32) -> Option<VisiblePoint> {
         let median = self.unproject(texel, median)?;
         self.unproject(texel, mean)
@@ -53,8 +53,8 @@ impl View {
             .or(Some(median))
     }
 
-    /// What is visible in the middle of a texel of the viewport, from its depth: 1 at the near plane, 0 at the far
-    /// one, which is also where nothing was drawn.
+    /// Visible point in the middle of a texel of the viewport, from its depth: 1 at the near plane, 0 at the far one, and also where
+    /// nothing was drawn.
     fn unproject(&self, texel: UVec2, depth: f32) -> Option<VisiblePoint> {
         if !(depth > 0.0 && depth <= 1.0) {
             return None;

@@ -1,4 +1,4 @@
-//! The same for sheets: cells side by side.
+//! Wind on the triangles of sheets: cells side by side.
 
 use std::ops::Range;
 
@@ -9,23 +9,23 @@ use super::Air;
 use crate::{
     kernels::{
         cells::{AroundParticle, gather, with_cells},
-        lanes::{Factor, Reading, Shared, SharedPoints, V3, Window},
+        lanes::{Factor, Reading, SharedPoints, V3, Window},
     },
     points::Points,
     topology::lattice::Lattice,
 };
 
-/// The particles of a sheet in the air, whose cells are cut as in `topology::grid`.
+/// Particles of a sheet in the air, whose cells are cut as in `topology::grid`.
 #[derive(Clone, Copy)]
 pub struct AirSheet<'a> {
     pub lattice: &'a Lattice,
-    /// \[m\]
+    /// Position \[m\].
     pub position: &'a Points,
-    /// A substep before \[m\].
+    /// Position a substep before \[m\].
     pub previous: &'a Points,
-    /// [1/kg]
+    /// Inverse mass [1/kg].
     pub inv_mass: &'a [f32],
-    /// What is added to [m/s²].
+    /// Accelerations that the wind's are added to [m/s²].
     pub acceleration: SharedPoints<'a>,
 }
 
@@ -33,7 +33,7 @@ impl AirSheet<'_> {
     /// Columns and rows.
     ///
     /// # Panics
-    /// When there are not as many of everything as particles.
+    /// When there are fewer of anything than particles in columns and rows.
     fn check(&self) -> [usize; 2] {
         let size = [self.lattice.columns, self.lattice.rows].map(|n| n as usize);
         let n = size[0] * size[1];
@@ -43,10 +43,10 @@ impl AirSheet<'_> {
             self.acceleration.z,
         ];
         assert!(
-            self.position.is_of(n)
-                && self.previous.is_of(n)
-                && self.inv_mass.len() == n
-                && acceleration.map(Shared::len) == [n; 3],
+            self.position.has(n)
+                && self.previous.has(n)
+                && self.inv_mass.len() >= n
+                && acceleration.iter().all(|values| values.len() >= n),
             "a sheet of {} x {} particles",
             size[0],
             size[1]
@@ -71,11 +71,11 @@ impl AirSheet<'_> {
     }
 }
 
-/// What [`drag_and_lift`](super::drag_and_lift) does, for a range of the rows of a sheet. Nothing but the accelerations of
-/// these rows is written, so that several threads may do different rows.
+/// Computes [`drag_and_lift`](super::drag_and_lift) for a range of the rows of a sheet. Only the accelerations of these rows are written,
+/// so that several threads may do different rows.
 ///
 /// # Panics
-/// When there are not as many of everything as particles, or not as many rows.
+/// When an array does not have one element for each particle, or there are not as many rows.
 pub fn drag_and_lift_on_sheet(
     level: Level,
     sheet: AirSheet,
@@ -98,11 +98,11 @@ pub fn drag_and_lift_on_sheet(
     });
 }
 
-/// What [`classic`](super::classic) does, for a range of the rows of a sheet. Nothing but the accelerations of these rows is
-/// written, so that several threads may do different rows.
+/// Computes [`classic`](super::classic) for a range of the rows of a sheet. Only the accelerations of these rows are written, so that
+/// several threads may do different rows.
 ///
 /// # Panics
-/// When there are not as many of everything as particles, or not as many rows.
+/// When an array does not have one element for each particle, or there are not as many rows.
 pub fn classic_on_sheet(level: Level, sheet: AirSheet, wind: Vec3, rows: Range<usize>) {
     let size = sheet.check();
     assert!(rows.end <= size[1], "rows of the sheet");
@@ -112,21 +112,21 @@ pub fn classic_on_sheet(level: Level, sheet: AirSheet, wind: Vec3, rows: Range<u
     });
 }
 
-/// The change of velocity of each triangle.
+/// Change of velocity of each triangle.
 #[derive(Clone, Copy)]
 struct Drag<'a> {
     sheet: AirSheet<'a>,
     air: Air,
-    /// From the sum of three displacements to a velocity [1/s].
+    /// Factor from the sum of three displacements to a velocity [1/s].
     third: f32,
-    /// ½ ρ/σ Δt by twice the area, the area being that of a triangle as a multiple of that at rest [s/m³].
+    /// ½ ρ/σ Δt divided by twice the area at rest; the area is a multiple of that at rest [s/m³].
     rate: f32,
     /// A third of the mass of a triangle, by the length of the step [kg/s].
     factor: f32,
 }
 
 impl<S: Simd> AroundParticle<S> for Drag<'_> {
-    /// The place, and the way since the substep before.
+    /// Position, and displacement since the substep before.
     type Corner = [V3<S>; 2];
 
     #[inline(always)]
@@ -155,7 +155,7 @@ impl<S: Simd> AroundParticle<S> for Drag<'_> {
         let after = if self.air.drag >= self.air.lift {
             Factor(one / (e + one)) * turned
         } else {
-            // More lift than drag: the part along û pushes forward, at most to the speed there was.
+            // With more lift than drag, the part along û pushes forward: at most to the speed before.
             let pushed = Factor(one - e) * turned;
             let length = pushed.dot(pushed).sqrt();
             Factor((speed / length).min(one)) * pushed
@@ -171,7 +171,7 @@ impl<S: Simd> AroundParticle<S> for Drag<'_> {
     }
 }
 
-/// The classic force on each triangle, along the wind.
+/// Classic force on each triangle, along the wind.
 #[derive(Clone, Copy)]
 struct Classic<'a> {
     sheet: AirSheet<'a>,

@@ -40,7 +40,7 @@ impl Wavy {
         inv_mass[0] = 0.0;
         inv_mass[columns as usize - 1] = 0.0;
         Self {
-            lattice: topology.lattice.expect("a grid"),
+            lattice: *topology.lattice().expect("a grid"),
             triangles: topology.triangles().iter().collect(),
             rest_areas: topology.triangle_areas().collect(),
             position,
@@ -59,7 +59,7 @@ impl Wavy {
         }
     }
 
-    /// Two accelerations to start from; what the scalar kernels do to them.
+    /// Two accelerations to start from, after the scalar kernels.
     fn one_by_one(&self, air: Air) -> [Points; 2] {
         let [mut drag, mut old] = [(); 2].map(|()| self.start());
         drag_and_lift(

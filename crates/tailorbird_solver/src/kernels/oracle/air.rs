@@ -1,4 +1,4 @@
-//! Air: what it does to a plate, to triangles, and how it blows.
+//! Air: its effect on a plate and on triangles, and breezes.
 
 use crate::properties::*;
 use bevy_math::{DMat3, DVec3, Isometry3d, Quat, Vec3};
@@ -12,7 +12,7 @@ use crate::{
         lanes::SharedPoints,
     },
     points::Points,
-    wind::{WAVES, Wave, WindShape},
+    wind::{WAVES, Wave, WindRegion},
 };
 
 /// The part along the normal by 1/(1 + g), then all of it by 1/(1 + e); more lift than drag pushes by 1 − e, and never beyond the speed there was.
@@ -48,7 +48,7 @@ prop_compose! {
     }
 }
 
-/// As far inside as this is strong: 3 t² − 2 t³ of what is inside by t times the falloff.
+/// 3 t² − 2 t³ at a depth of t times the falloff.
 fn strength(depth: f64, falloff: f64) -> f64 {
     if falloff == 0.0 {
         return f64::from(u8::from(depth >= 0.0));
@@ -70,7 +70,7 @@ proptest! {
         prop_assert!(is.distance(wanted) < 3e-5, "{is} {wanted}");
     }
 
-    /// What a triangle's air gives, shared by its corners: a third of its mass each.
+    /// A triangle's change of momentum is shared by its corners: a third of its mass each.
     #[test]
     fn triangles_share_what_the_air_gives_them(
         air in airs(), corners in [vector(1.0), vector(1.0), vector(1.0)], moved in [vector(0.1), vector(0.1), vector(0.1)],
@@ -111,9 +111,9 @@ proptest! {
         turn in vector(2.0), shift in vector(1.0), places in prop::collection::vec(vector(2.0), 1..40), seconds in 0.01_f32..1.0,
     ) {
         let shape = match kind {
-            0 => WindShape::Everywhere,
-            1 => WindShape::Cuboid { half_size: size.into() },
-            _ => WindShape::Sphere { radius: size[0] },
+            0 => WindRegion::Everywhere,
+            1 => WindRegion::Cuboid { half_size: size.into() },
+            _ => WindRegion::Sphere { radius: size[0] },
         };
         let to_own = Isometry3d::new(shift, Quat::from_scaled_axis(turn));
         let all = waves.map(|waves| {
@@ -138,9 +138,9 @@ proptest! {
             }
             let inside = own * p + shift.as_dvec3();
             let depth = match shape {
-                WindShape::Everywhere => f64::INFINITY,
-                WindShape::Cuboid { half_size } => (half_size.as_dvec3() - inside.abs()).min_element(),
-                WindShape::Sphere { radius } => f64::from(radius) - inside.length(),
+                WindRegion::Everywhere => f64::INFINITY,
+                WindRegion::Cuboid { half_size } => (half_size.as_dvec3() - inside.abs()).min_element(),
+                WindRegion::Sphere { radius } => f64::from(radius) - inside.length(),
             };
             prop_assume!(depth.abs() > 1e-5);
             let part = if kind == 0 { 1.0 } else { strength(depth, falloff.into()) };

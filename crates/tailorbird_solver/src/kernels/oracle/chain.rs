@@ -43,7 +43,7 @@ struct Case<'a> {
 impl Case<'_> {
     /// The chains of a batch.
     fn chains(&self, batch: usize) -> Vec<Chain> {
-        let all = self.topology.fabric.as_ref().expect("no grid").chains();
+        let all = self.topology.fabric().expect("no grid").chains();
         let batch = &all.batches[batch];
         let of_lane = |lane: usize| {
             let slots = batch.slots.clone().skip(lane).step_by(LANES);
@@ -69,9 +69,9 @@ impl Case<'_> {
         (0..LANES).filter(used).map(of_lane).collect()
     }
 
-    /// Where the particles are after a batch.
+    /// Positions of the particles after a batch.
     fn solved(&self, batch: usize) -> Vec<DVec3> {
-        let fabric = self.topology.fabric.as_ref().expect("no grid");
+        let fabric = self.topology.fabric().expect("no grid");
         let mut position: Points = self.position.iter().copied().collect();
         let mut normal: Option<Points> =
             (self.normal.as_ref()).map(|all| all.iter().copied().collect());
@@ -89,7 +89,7 @@ impl Case<'_> {
         position.iter().map(Vec3::as_dvec3).collect()
     }
 
-    /// Where the particles of a chain are afterwards; none where contacts and tension beyond what edges bear come together, of which the kernel
+    /// Positions of the particles of a chain afterwards; `None` where contacts and shared tension come together, for which the kernel
     /// solves an upper bound.
     fn wanted(&self, chain: &Chain) -> Option<Vec<DVec3>> {
         let particles = &chain.particles;
@@ -208,8 +208,7 @@ fn compare(case: &Case) -> Result<[usize; 2], TestCaseError> {
     let mut count = [0; 2];
     let batches = case
         .topology
-        .fabric
-        .as_ref()
+        .fabric()
         .expect("no grid")
         .chains()
         .batches
@@ -248,7 +247,7 @@ proptest! {
         let case = Case {
             position, inv_mass: vec![1.0; 184], normal: Some(normals.clone()), stretch: 0.0, give: Give::default(), topology: &topology,
         };
-        for batch in 0..topology.fabric.as_ref().expect("no grid").chains().batches.len() {
+        for batch in 0..topology.fabric().expect("no grid").chains().batches.len() {
             for (i, is) in case.solved(batch).into_iter().enumerate() {
                 let moved = is - case.position[i].as_dvec3();
                 prop_assert!(moved.dot(normals[i].as_dvec3()).abs() < 1e-4, "{i}: {moved}");

@@ -1,4 +1,4 @@
-//! What a contact does to a particle's path, in double precision, and particles that meet a collider.
+//! Contact rule for a particle's path, in double precision, and particles that meet a collider.
 
 use std::sync::atomic::AtomicBool;
 
@@ -20,14 +20,14 @@ use crate::{
 pub(super) struct Particles {
     pub from: Vec<Vec3>,
     pub to: Vec<Vec3>,
-    /// What was noted of each before: the normal and the depth.
+    /// Noted contact of each particle: the normal and the depth.
     pub noted: Option<Vec<(Vec3, f32)>>,
     pub phase: Phase,
-    /// How far what was inside already is pushed out \[m\].
+    /// Largest distance by which a particle is pushed out that was inside already \[m\].
     pub most: f32,
 }
 
-/// Where they are afterwards, and what is noted.
+/// Positions afterwards, and noted contacts.
 pub(super) struct Collided {
     pub from: Points,
     pub to: Points,
@@ -42,14 +42,14 @@ pub(super) struct Meeting {
     pub from: DVec3,
     pub to: DVec3,
     pub normal: DVec3,
-    /// How far `to` is below the surface.
+    /// Depth of `to` below the surface.
     pub depth: f64,
     pub depth_at_start: f64,
-    /// What the surface moves by.
+    /// Displacement of the surface.
     pub surface: DVec3,
 }
 
-/// Where a particle is after its contact.
+/// Path of a particle after its contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct After {
     pub from: DVec3,
@@ -58,16 +58,16 @@ pub(super) struct After {
     pub overlaps: bool,
 }
 
-/// What a rule says of a path.
+/// Verdict of a rule on a path.
 pub(super) enum Verdict {
     Free,
     Touches(Meeting),
-    /// Rounding decides.
+    /// Doubt: rounding decides.
     Doubt,
 }
 
 impl Particles {
-    /// The last one is held.
+    /// Collides all particles; the last one is held.
     pub fn collide(&self, collide: impl FnOnce(Touching) -> bool) -> Collided {
         let n = self.from.len();
         let (mut from, mut to): (Points, Points) = (
@@ -102,7 +102,7 @@ impl Particles {
         }
     }
 
-    /// What counts of the contact that was noted of a particle: in the final phase alone.
+    /// Noted contact of a particle that counts: in the final phase alone.
     pub fn known(&self, i: usize) -> (DVec3, f64) {
         match (&self.noted, self.phase) {
             (Some(noted), Phase::Final) => (noted[i].0.as_dvec3(), f64::from(noted[i].1)),
@@ -110,9 +110,9 @@ impl Particles {
         }
     }
 
-    /// Out along the normal, but for what was deep inside before, which comes out by as much as it went in and `most` beside that. In the final
-    /// phase friction takes the sliding back by its coefficient times the depth, that of the approach included. What is left of motion
-    /// away from the surface is none: `from` follows.
+    /// Pushes out along the normal; a particle that was deep inside before comes out by as much as it went in, plus `most`. In the final
+    /// phase friction takes the sliding back by its coefficient times the depth, that of the approach included. No motion away from the
+    /// surface is left: `from` follows.
     pub fn resolved(&self, i: usize, meeting: Meeting, friction: f32) -> After {
         let Meeting {
             from, to, normal, ..
@@ -147,7 +147,7 @@ impl Particles {
         }
     }
 
-    /// Compares all particles with what a rule says of each, and how that looks from outside; returns how many touch.
+    /// Compares all particles with the verdict of a rule on each, seen from outside; returns how many touch.
     pub fn compare(
         &self,
         is: &Collided,
@@ -234,12 +234,12 @@ pub(super) fn particles(size: f32, travel: f32) -> impl Strategy<Value = Particl
     })
 }
 
-/// Whether a number is so near to where a rule changes that rounding decides.
+/// Returns whether a number is so near to a threshold of a rule that rounding decides.
 pub(super) fn near(value: f64, threshold: f64) -> bool {
     (value - threshold).abs() < 1e-5
 }
 
-/// What becomes of a path in the axes of a solid, of which the distance and the normal are known.
+/// Meeting of a path, in the axes of a solid, whose distance and normal are known.
 pub(super) fn meeting(
     particles: &Particles,
     i: usize,

@@ -9,13 +9,13 @@ use crate::{
     topology::{Topology, test_meshes::delaunay},
 };
 
-/// Of a mesh x⁻ moves by −w c times the difference to each neighbour, c = σ · weight · the least of viscosity and what an edge stands.
+/// In a mesh x⁻ moves by −w c times the difference to each neighbour, c = σ · weight · min(viscosity, limit of the edge).
 #[test]
 fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let (positions, triangles) = delaunay(12, 3);
     let topology = Topology::build(&ClothShape::mesh(positions, triangles.concat()), Vec3::ONE);
     let topology = topology.expect("a mesh");
-    let fabric = topology.fabric.as_ref().expect("no grid");
+    let fabric = topology.fabric().expect("no grid");
     let n = topology.particles();
     let point = |i: usize, seed: u64| {
         let axis = |k: u64| crate::topology::test_meshes::random(i, seed + k) - 0.5;
@@ -28,7 +28,7 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
     let middle = limits.sum::<f64>() / fabric.exchanges().len() as f64;
     // So far away that x⁻ is rounded to 6 · 10⁻⁵, and velocities are not.
     let far = Vec3::splat(1000.0);
-    // Where none, some and all of the edges stand no more.
+    // Viscosities at which none, some and all of the edges are at their limit.
     for viscosity in [1e-2, 1.0, 1e3].map(|part| (part * middle) as f32) {
         for rigid in [
             RigidMotion::default(),

@@ -20,7 +20,7 @@ struct Hinge {
     coefficients: [f32; 4],
     area: f32,
     pass: HingePass,
-    /// Of D, where it is folded at rest \[m\].
+    /// Length of D, where the hinge is folded at rest \[m\].
     rest_length: Option<f32>,
 }
 

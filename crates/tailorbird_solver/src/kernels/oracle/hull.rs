@@ -31,7 +31,7 @@ fn hull(points: &[Vec3]) -> Option<(ConvexPolyhedron, PlaneList)> {
 proptest! {
     #![proptest_config(cases(200))]
 
-    /// Of few planes, and of so many that those are looked for that can be the nearest.
+    /// Hulls of few planes, and of so many that only planes are searched that can be the nearest.
     #[test]
     fn a_hull_is_as_far_as_the_plane_of_its_nearest_face(
         points in prop_oneof![prop::collection::vec(vector(1.0), 5..9), prop::collection::vec(vector(1.0), 40..80)],

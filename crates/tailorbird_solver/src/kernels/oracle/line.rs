@@ -8,10 +8,10 @@ use bevy_math::{DVec3, Vec3};
 use super::{Cloth, cases, cloths, dense, vector};
 use crate::kernels::{edges::LineStiffness, lanes::levels, lattice};
 
-/// The least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
+/// Least α̃ L², as a part of (w_k + w_{k+1}) L² [-].
 const COMPLIANCE: f64 = 5e-4;
 
-/// One line of particles, and what it is solved with.
+/// One line of particles, with the parameters of its solve.
 struct Line {
     position: Vec<DVec3>,
     inv_mass: Vec<f64>,
@@ -20,12 +20,12 @@ struct Line {
     /// α̃ L² at rest \[m²/kg\], and α̃ of the triples [1/kg].
     stretch: f64,
     bend: f64,
-    /// The part of |μ| that acts along edges as they lie, κ = 1.3 \[kg\].
+    /// Stable limit: the part of |μ| that acts along edges as they are predicted to lie, κ = 1.3 \[kg\].
     borne: f64,
 }
 
 impl Line {
-    /// d − n (n · d): what moves along a surface.
+    /// d − n (n · d): the part along a surface.
     fn along(&self, k: usize, d: DVec3) -> DVec3 {
         d - self.normal[k] * self.normal[k].dot(d)
     }
@@ -79,7 +79,7 @@ impl Line {
         dense(a, right)
     }
 
-    /// Moves the particles by what acts of the multipliers along edges as they lie; returns what is beyond that, X \[kg\].
+    /// Moves the particles by the part of the multipliers within the stable limit; returns the rest, X \[kg\].
     fn apply(&mut self, mu: &[f64]) -> Vec<f64> {
         let d = self.edges();
         let beyond = (0..d.len()).map(|k| {
@@ -102,7 +102,7 @@ impl Line {
         beyond
     }
 
-    /// The least of Σ |y|²/(2 w) + Σ X |x_{k+1} − x_k|²/2, along one surface or of what nothing touches.
+    /// Moves the particles to the least of Σ |y|²/(2 w) + Σ X |x_{k+1} − x_k|²/2, along one surface or without any.
     fn share(&mut self, x: &[f64]) {
         let n = self.position.len();
         let mut a = vec![vec![0.0; n]; n];
@@ -126,7 +126,7 @@ impl Line {
         }
     }
 
-    /// Where the particles are then; none where an edge on a surface pulls beyond what acts along it as it lies.
+    /// Positions of the particles afterwards; `None` where an edge on a surface pulls beyond the stable limit.
     fn solve(mut self) -> Option<Vec<DVec3>> {
         self.bend();
         let mu = self.multipliers();
@@ -143,7 +143,7 @@ impl Line {
     }
 }
 
-/// What lines resist with.
+/// Stiffness of lines.
 #[derive(Clone, Copy, Debug)]
 struct Fabric {
     stretch: f32,
@@ -248,14 +248,14 @@ proptest! {
         prop_assert_eq!(compare(&cloth, fabric, 2e-3)?, all);
     }
 
-    /// Where q is less than L²/4, guards keep the step short.
+    /// With q less than L²/4, guards keep the step short.
     #[test]
     fn crumpled_lines_are_solved_as_stated(cloth in cloths(0.9, false, false), fabric in fabrics()) {
         let all = cloth.columns + cloth.rows;
         prop_assert_eq!(compare(&cloth, fabric, 3e-3)?, all);
     }
 
-    /// Where normals are the same, pivots are numbers: tension that is shared is shared along the surface.
+    /// With equal normals, pivots are numbers: tension that is shared is shared along the surface.
     #[test]
     fn lines_on_one_surface_are_solved_as_stated(cloth in cloths(0.3, false, false), size in 1.0_f32..2.0, normal in vector(1.0), fabric in fabrics()) {
         let position = cloth.position.iter().map(|p| p * size).collect();

@@ -43,7 +43,7 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// A sheet, without what it is solved with.
+/// A sheet, without the parameters of its solve.
 #[derive(Clone, Debug)]
 struct Cloth {
     columns: usize,
@@ -52,12 +52,12 @@ struct Cloth {
     inv_mass: Vec<f32>,
     /// Normals of contacts; empty where nothing is in contact.
     normal: Vec<Vec3>,
-    /// How long edges are to be, along rows and along columns; empty where that is 1 for all of them.
+    /// Prescribed lengths of edges along rows and along columns; empty where all are 1.
     lengths: [Vec<f32>; 2],
 }
 
 impl Cloth {
-    /// Solves it with a kernel, and returns where the particles are then.
+    /// Solves it with a kernel, and returns the positions of the particles afterwards.
     fn solved(&self, solve: impl FnOnce(Sheet)) -> Vec<DVec3> {
         self.solved_with(Give::default(), solve)
     }
@@ -86,7 +86,7 @@ impl Cloth {
     }
 }
 
-/// The sum of m Δx of what is free \[kg m\].
+/// Sum of m Δx of the free particles \[kg m\].
 fn momentum(from: &[DVec3], to: &[DVec3], inv_mass: &[f32]) -> DVec3 {
     let all = from.iter().zip(to).zip(inv_mass);
     all.filter(|(_, w)| **w > 0.0)

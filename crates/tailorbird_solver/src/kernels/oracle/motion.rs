@@ -38,7 +38,7 @@ proptest! {
         let (mut position, mut previous, mut lost) = (points(&start), points(&earlier), points(&column(2)));
         let acceleration = pushed.then(|| points(&column(3)));
         let verlet = Verlet { seconds, seconds_before: before.unwrap_or(0.0), damping, gravity };
-        verlet.step(Level::new(), &mut position, &mut previous, &mut lost, acceleration.as_ref(), &inv_mass);
+        verlet.step(Level::new(), &mut position, &mut previous, &mut lost, acceleration.as_ref(), &inv_mass, 0..inv_mass.len());
         let h = f64::from(seconds);
         let kept = (-f64::from(damping) * h).exp() * before.map_or(1.0, |before| h / f64::from(before));
         for i in 0..places.len() {

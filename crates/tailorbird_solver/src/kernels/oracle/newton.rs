@@ -87,7 +87,7 @@ proptest! {
         let solved = cloth.solved(|sheet| lattice::solve_rows(Level::new(), sheet, line, 0..sheet.rows));
         for (i, solved) in solved.into_iter().enumerate() {
             let moved = solved - cloth.position[i].as_dvec3();
-            // Coordinates below 128, and ways of their size.
+            // Coordinates below 128, and displacements of their size.
             prop_assert!(moved.dot(cloth.normal[i].as_dvec3()).abs() < 2e-4, "{i}: {moved}");
         }
     }

@@ -4,7 +4,7 @@ use bevy_math::{DVec3, Vec3};
 
 use crate::kernels::{contact::unit_of_about, lanes::V3};
 
-/// A vector of these lengths, whose unit vector the series gives.
+/// Unit vector by the series, from a vector of this expected length.
 fn unit_of(v: Vec3, expected: f32) -> DVec3 {
     let simd = fearless_simd::Fallback::new();
     let all = simd_mask(simd);

@@ -111,7 +111,7 @@ proptest! {
         compare(&Cloth { inv_mass, ..cloth }, shear)?;
     }
 
-    /// Of the strain e = |d|/L − 1, e³/(3 (1 + e)² + 1) is left: it never goes too far.
+    /// The strain e = |d|/L − 1 becomes e³/(3 (1 + e)² + 1): it never goes too far.
     #[test]
     fn a_rigid_diagonal_is_left_with_the_cube_of_its_strain(strain in -0.5_f32..2.0, w in 0.1_f32..4.0, rising_first in any::<bool>()) {
         let cloth = cell(strain, [w, 1.0, 2.0, 0.0]);

@@ -1,4 +1,4 @@
-//! Solids that tell how far points are from them, and what becomes of particles that meet them while they move and turn.
+//! Solids with distance functions, and particles that meet them while they move and turn.
 
 use crate::properties::*;
 use bevy_math::{DMat3, DVec3, Mat3, Quat, Vec3};
@@ -37,14 +37,14 @@ fn size() -> impl Strategy<Value = f32> {
     0.05_f32..1.0
 }
 
-/// How far a point is from a solid, and where out of it is.
+/// Distance of a point from a solid, and the direction out of it.
 pub(super) fn near_of<Q: Solid>(solid: &Q, p: Vec3) -> (f64, DVec3) {
     let contact = nearest(solid, &STILL, 0, [p, p]);
     (-f64::from(contact.depth), contact.normal.as_dvec3())
 }
 
-/// The solid has a distance of its own, which is a plane's: another library's inside, and no more than that outside. On the way along the normal,
-/// it changes by as much as one goes.
+/// Compares the solid's distance, which is a plane's, with another library's: equal inside, and no more than that outside. Along the
+/// normal, it changes by the distance moved.
 fn compare<Q: Solid>(
     solid: &Q,
     p: Vec3,

@@ -20,7 +20,7 @@ fn collide(sphere: &MovingSphere, particles: &Particles) -> super::contact::Coll
     particles.collide(|touching| collide_all(Level::new(), sphere, touching, all))
 }
 
-/// What becomes of a particle's path.
+/// Contact rule of a sphere for a particle's path.
 fn rule(sphere: &MovingSphere, particles: &Particles, i: usize) -> Verdict {
     let r = f64::from(sphere.radius);
     let from = particles.from[i].as_dvec3() - sphere.from.as_dvec3();
@@ -97,7 +97,7 @@ fn spheres() -> impl Strategy<Value = MovingSphere> {
     )
 }
 
-/// Roots at 0.02 of the surface are off by 10⁻⁶/√0.02, and by as much again for ways of up to four times the radius.
+/// Roots at 0.02 of the surface are off by 10⁻⁶/√0.02, and by as much again for paths of up to four times the radius.
 const MOST: f64 = 2e-4;
 
 fn compare(sphere: &MovingSphere, particles: &Particles) -> Result<usize, TestCaseError> {
@@ -147,7 +147,7 @@ proptest! {
         compare(&sphere, &particles)?;
     }
 
-    /// However fast: from outside, no part of the way lies within.
+    /// However fast: from outside, no part of the path lies within.
     #[test]
     fn nothing_passes_through_a_sphere(
         from in vector(3.0), offset in vector(1.0), radius in 0.05_f32..1.0, speed in 0.1_f32..100.0,
@@ -162,7 +162,7 @@ proptest! {
         }
     }
 
-    /// Where it would slide by more than a radius, it slides by a radius.
+    /// A particle that would slide by more than a radius slides by a radius.
     #[test]
     fn a_long_slide_is_cut_to_a_radius(radius in 0.1_f32..1.0, aside in 0.1_f32..0.8, speed in 5.0_f32..50.0) {
         prop_assume!((speed - 2.0 * radius) * aside > radius);
@@ -171,7 +171,7 @@ proptest! {
         let normal = Vec3::new(aside, 0.0, (1.0 - aside * aside).sqrt());
         let hit = normal * radius;
         prop_assert!(((end - hit).length() / radius - 1.0).abs() < 1e-4, "{end}");
-        // Rounding of the whole way, in a dozen operations.
+        // Rounding of the whole path, in a dozen operations.
         prop_assert!((end - hit).dot(normal).abs() < 1e-6 * speed);
     }
 }
@@ -210,7 +210,8 @@ fn a_particle_on_the_surface_is_not_shot_through_whatever_rounding_did() {
     }
 }
 
-/// What starts within the surface by no more than 10⁻⁴ of the square enters there; what is deeper was inside, and leaves where it is nearest.
+/// A path that starts within the surface by no more than 10⁻⁴ of the square enters there; one that starts deeper was inside, and leaves at
+/// the nearest point.
 #[test]
 fn a_rounding_inside_counts_as_on_the_surface() {
     for (square, outside) in [(1.0 - 0.95e-4, true), (1.0 - 1.05e-4, false)] {

@@ -1,4 +1,4 @@
-//! Half-spaces, heights and the planes that particles see of a mesh.
+//! Half-spaces, heights and contact planes of meshes.
 
 use crate::properties::*;
 use bevy_math::{DVec3, Mat3, UVec2, Vec2, Vec3};
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     kernels::{
         half_space::{self, MovingHalfSpace},
-        patches::{Patches, Seen, outdated},
+        patches::{ContactPlanes, Patches, outdated},
         solid::{self, Motion},
         terrain::Terrain,
     },
@@ -96,7 +96,7 @@ proptest! {
             patches.set(i, from, normal, Vec3::ZERO, 1.0);
             prop_assert!((patches.height(i, *to) - normal.dot(to - from)).abs() < 1e-6);
         }
-        let seen = Seen { patches: &patches, margin };
+        let seen = ContactPlanes { patches: &patches, margin };
         let motion = Motion { from: Vec3::ZERO, to: Vec3::ZERO, axes: Mat3::IDENTITY, turn: Mat3::IDENTITY, friction };
         let all = 0..particles.from.len();
         let is = particles.collide(|touching| solid::collide_all(Level::new(), &seen, &motion, touching, all));
@@ -153,7 +153,8 @@ proptest! {
         prop_assert!((depth - (margin - above * wanted.y)).abs() < 1e-4, "{depth}");
     }
 
-    /// A plane holds within its distance from where it was looked for, in the axes of the mesh; what is held needs none.
+    /// A plane is valid within its distance from the position for which it was computed, in the axes of the mesh; a held particle needs
+    /// none.
     #[test]
     fn planes_hold_near_where_they_were_looked_for(
         places in prop::collection::vec((vector(1.0), vector(0.1), 0.0_f32..0.15), 1..40), turn in vector(1.0), to in vector(1.0),
@@ -177,7 +178,7 @@ proptest! {
     }
 }
 
-/// What lies on the last row or column belongs to the last cell.
+/// A point on the last row or column belongs to the last cell.
 #[test]
 fn heights_end_with_those_of_the_last_corners() {
     let heights: Vec<f32> = (0..9).map(|i| 0.1 * (i * i) as f32).collect();

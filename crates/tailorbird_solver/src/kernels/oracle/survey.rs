@@ -1,4 +1,4 @@
-//! What is squeezed and strained of a sheet, and what is done about it.
+//! Survey of the squeezed and strained edges of a sheet, and damping at squeezed ones.
 
 use crate::properties::*;
 use bevy_math::{DVec3, Vec2, Vec3};
@@ -52,7 +52,7 @@ proptest! {
         prop_assert!((f64::from(is.strained) - part).abs() < 1e-6, "{is:?} {part}");
         let longest = strained.into_iter().fold(0.0, f64::max);
         prop_assert!((f64::from(is.longest) - longest).abs() < 1e-5, "{is:?} {longest}");
-        // Where there are fewer columns than lanes, what is not there counts as squeezed.
+        // With fewer columns than lanes, the missing edges count as squeezed.
         let squeezed = edges.iter().any(|(_, part)| *part < limits[1]);
         prop_assert!(is.squeezed == squeezed || (is.squeezed && cloth.columns <= 16), "{is:?}");
     }

@@ -1,4 +1,4 @@
-//! Long paths against solids, and which particles touch.
+//! Long paths against solids, and the search for particles that touch.
 
 use crate::properties::*;
 use bevy_math::{DVec3, Mat3, Vec3};
@@ -111,7 +111,7 @@ proptest! {
     }
 }
 
-/// What starts deeper inside than a ten-thousandth of the size was inside, and is let through.
+/// A path that starts deeper inside than a ten-thousandth of the size was inside, and is let through.
 #[test]
 fn a_path_is_followed_from_the_surface_on() {
     for (below, followed) in [(0.95e-4, true), (1.05e-4, false)] {
@@ -124,7 +124,7 @@ fn a_path_is_followed_from_the_surface_on() {
     }
 }
 
-/// How far a particle can go before it comes nearer to the other side.
+/// Distance that a particle can go in a solid before it comes nearer to the other side.
 #[test]
 fn the_size_of_a_solid_is_the_radius_of_what_fits_into_it() {
     let size = Vec3::new(0.5, 0.3, 0.7);
@@ -143,6 +143,6 @@ fn the_size_of_a_solid_is_the_radius_of_what_fits_into_it() {
     for [bottom, top] in [[0.2, 0.6], [0.6, 0.2], [0.2, 0.2]] {
         assert!((Capsule::new(bottom, top, 0.9, 0.01).size() - 0.21).abs() < 1e-6);
     }
-    // One ball holds the other.
+    // One ball contains the other.
     assert!((Capsule::new(0.2, 0.6, 0.1, 0.01).size() - 0.61).abs() < 1e-6);
 }

@@ -26,7 +26,7 @@ struct Pin {
 #[derive(Clone, Debug)]
 struct Case {
     cloth: Cloth,
-    /// Where the particles were at the start of the substep.
+    /// Positions of the particles at the start of the substep.
     start: Vec<Vec3>,
     pins: Vec<Pin>,
     slack: f32,
@@ -45,7 +45,7 @@ impl Case {
         }
     }
 
-    /// How far a particle gets from a pin.
+    /// Largest distance of a particle from a pin.
     fn reach(&self, pin: Pin, i: usize) -> f64 {
         let [column, row] = [i % self.cloth.columns, i / self.cloth.columns];
         let ways = self.ways(pin);
@@ -67,7 +67,7 @@ impl Case {
         pins.chain([None]).collect()
     }
 
-    /// By rows and columns, and by lengths.
+    /// Positions after both kernels: by rows and columns, and by lengths.
     fn solved(&self) -> [Vec<DVec3>; 2] {
         let mut start: Points = self.start.iter().copied().collect();
         let recovery = self.recovery.map(|[least, part]| Recovery {
@@ -105,7 +105,7 @@ impl Case {
         ]
     }
 
-    /// s = 2 (q − l²)/(3 q + l²) of the way to the pin, for each tether that is shorter than the distance.
+    /// Position after s = 2 (q − l²)/(3 q + l²) times the distance to the pin, for each tether that is shorter than the distance.
     fn wanted(&self, i: usize) -> DVec3 {
         let start = self.cloth.position[i].as_dvec3();
         if self.cloth.inv_mass[i] == 0.0 {
@@ -163,7 +163,7 @@ fn tethered(contacts: bool) -> impl Strategy<Value = Case> {
     })
 }
 
-/// Coordinates below 32 come with an error of 10⁻⁶; each of three tethers takes what was there on, at most twice.
+/// Coordinates below 32 come with an error of 10⁻⁶; each of three tethers passes the error before on, at most twice.
 const MOST: f64 = 3e-5;
 
 fn compare(case: &Case) -> Result<(), TestCaseError> {
@@ -196,7 +196,7 @@ proptest! {
         }
     }
 
-    /// What is within reach stays to the bit; of the excess e, e³/(3 (1 + e)² + 1) is left, along the line to the pin.
+    /// A particle within reach stays to the bit; of the excess e, e³/(3 (1 + e)² + 1) is left, along the line to the pin.
     #[test]
     fn what_is_beyond_reach_ends_at_it_on_the_line_to_its_pin(case in tethered(false)) {
         let case = Case { recovery: None, pins: vec![case.pins[0]], ..case };
@@ -218,7 +218,7 @@ proptest! {
         }
     }
 
-    /// What was beyond reach when the substep began comes back by the rate alone.
+    /// A particle that was beyond reach when the substep began comes back by the rate alone.
     #[test]
     fn what_was_beyond_comes_back_by_the_rate(at in vector(1.0), least in 0.0_f32..0.1, part in 0.0_f32..0.2) {
         prop_assume!(at.length() > 0.1);

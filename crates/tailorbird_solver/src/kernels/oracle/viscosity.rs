@@ -1,4 +1,4 @@
-//! Viscosity: neighbours exchange momentum in proportion to how their velocities differ.
+//! Viscosity: neighbours exchange momentum in proportion to the difference of their velocities.
 
 use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
@@ -10,12 +10,12 @@ use crate::{
         lanes::SharedPoints,
         rigid_motion::RigidMotion,
         verlet::Verlet,
-        viscosity::{Beside, LARGEST, Motion},
+        viscosity::{Beside, LARGEST, SheetMotion},
     },
     points::Points,
 };
 
-/// A sheet, and how its particles move.
+/// A sheet, and the motion of its particles.
 #[derive(Clone, Debug)]
 struct Moving {
     cloth: Cloth,
@@ -27,13 +27,13 @@ struct Moving {
 }
 
 impl Moving {
-    /// What each particle moves by, with what rounding takes from it.
+    /// Displacement of each particle, rounding error included.
     fn displacements(&self) -> Vec<DVec3> {
         let mut previous: Points = self.previous.iter().copied().collect();
         let mut lost = Points::zeroed(self.previous.len());
         let acceleration = (self.acceleration.as_ref()).map(|all| all.iter().copied().collect());
         let moved = self.cloth.solved(|sheet| {
-            let motion = Motion {
+            let motion = SheetMotion {
                 sheet,
                 previous: SharedPoints::new(&mut previous),
                 lost: SharedPoints::new(&mut lost),
@@ -55,7 +55,7 @@ impl Moving {
         self.cloth.position[i].as_dvec3() - self.previous[i].as_dvec3()
     }
 
-    /// x − x⁻, less what rigid motion moves it by.
+    /// x − x⁻, less the displacement by rigid motion.
     fn own_velocity(&self, i: usize) -> DVec3 {
         let RigidMotion {
             center,
@@ -81,7 +81,7 @@ impl Moving {
         all.filter(|(is, _)| *is).map(|(_, j)| j).collect()
     }
 
-    /// d (x − x⁻ + w κ Σ (v′ − v)) + a h² of what is free, d = e^(−damping · h).
+    /// d (x − x⁻ + w κ Σ (v′ − v)) + a h² of a free particle, d = e^(−damping · h).
     fn wanted(&self, i: usize) -> DVec3 {
         let w = f64::from(self.cloth.inv_mass[i]);
         if w == 0.0 {
@@ -152,7 +152,7 @@ proptest! {
         prop_assert!(sum.length() < 5.0 * 8e-6 * (start.len() as f64), "{sum}");
     }
 
-    /// What moves as the whole does loses nothing, whatever the conductance.
+    /// A cloth in rigid motion is not slowed, whatever the conductance.
     #[test]
     fn rigid_motion_is_not_slowed(moving in moving()) {
         let mut moving = Moving { acceleration: None, verlet: STILL, conductance: 0.5, ..moving };
@@ -169,7 +169,7 @@ proptest! {
         }
     }
 
-    /// The energy of what is not rigid falls for as long as c is no more than `LARGEST`.
+    /// Energy beyond that of rigid motion falls for as long as c is no more than `LARGEST`.
     #[test]
     fn viscosity_takes_energy(moving in moving(), c in 0.01_f32..1.0) {
         let mut moving = Moving { acceleration: None, verlet: STILL, ..moving };

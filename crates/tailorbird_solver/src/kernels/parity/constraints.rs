@@ -1,4 +1,4 @@
-//! What holds constraints.
+//! Parity of the kernels of constraints.
 
 use bevy_math::{Vec2, Vec3};
 
@@ -59,7 +59,7 @@ fn lines() {
     }
 }
 
-/// What lines push particles with that carry a part of a body is all there: with what is told of it, momentum is kept.
+/// Lines with particles that carry parts of bodies report all impulses on these: with them, momentum is kept.
 #[test]
 fn lines_tell_what_they_press() {
     let line = LineStiffness {
@@ -199,7 +199,7 @@ fn rings_of_a_mesh() {
 
 fn chains_of(cloth: ClothShape, has_rings: bool) {
     let topology = Topology::build(&cloth, Vec3::ONE).expect("a mesh");
-    let fabric = topology.fabric.as_ref().expect("no grid");
+    let fabric = topology.fabric().expect("no grid");
     let closed = |batch: &ChainBatch| batch.closing.is_some();
     assert_eq!(fabric.chains().batches.iter().any(closed), has_rings);
     let rest = topology.rest_positions.iter().map(|p| *p * 20.0);

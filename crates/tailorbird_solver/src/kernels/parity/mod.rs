@@ -33,11 +33,11 @@ struct State {
     normal: Points,
     depth: Numbers,
     pressed: Numbers,
-    /// How long edges are to be, along rows, along columns, across.
+    /// Prescribed lengths of edges: along rows, along columns, across.
     lengths: [Numbers; 3],
-    /// Whether some particles carry parts of bodies.
+    /// True if some particles carry parts of bodies.
     bodies: bool,
-    /// Whether edges are not to be as long as at rest.
+    /// True if prescribed lengths differ from those at rest.
     granted: bool,
 }
 
@@ -141,7 +141,7 @@ impl State {
     }
 }
 
-/// Of what is strained, and of what is not.
+/// Give of a strained cloth, and of one that is not.
 fn give(strained: bool) -> Give {
     if strained {
         Give {

@@ -1,4 +1,4 @@
-//! What moves particles, keeps them out of colliders or looks at them.
+//! Parity of the kernels that move particles, keep them out of colliders or survey them.
 
 use bevy_math::Vec3;
 use fearless_simd::Level;
@@ -15,7 +15,7 @@ use super::{
         rigid_motion::RigidMotion,
         sphere::{self, MovingSphere},
         verlet::Verlet,
-        viscosity::{Beside, Motion},
+        viscosity::{Beside, SheetMotion},
     },
     SIZES, State, blocks, noise, same,
 };
@@ -42,6 +42,7 @@ fn inertia() {
                     &mut state.lost,
                     pushed.then_some(&state.acceleration),
                     &state.inv_mass,
+                    0..state.inv_mass.len(),
                 );
             });
         }
@@ -59,7 +60,7 @@ fn viscosity() {
                     displacement: Vec3::new(0.01, -0.02, 0.03),
                     rotation: Vec3::new(0.03, 0.01, -0.02),
                 };
-                let motion = Motion {
+                let motion = SheetMotion {
                     sheet: Sheet {
                         columns: state.columns,
                         rows: state.rows,
@@ -104,7 +105,7 @@ fn viscosity() {
 fn viscosity_keeps_momentum_and_is_inertia_without_it() {
     let motion_of = |state: &mut State, conductance: f32, rigid: RigidMotion| {
         let rows = state.rows;
-        let motion = Motion {
+        let motion = SheetMotion {
             sheet: Sheet {
                 columns: state.columns,
                 rows,
@@ -144,6 +145,7 @@ fn viscosity_keeps_momentum_and_is_inertia_without_it() {
         &mut expected.lost,
         None,
         &expected.inv_mass,
+        0..expected.inv_mass.len(),
     );
     assert!(plain.bits() == expected.bits());
     assert!(damped.bits() != expected.bits());

@@ -1,27 +1,27 @@
-//! Finds chains and rings that share no particle.
+//! Search for chains and rings that share no particle.
 
 use bevy_math::Vec3;
 
 use super::{NONE, Weave};
 
-/// Two edges at a particle continue one another where the cosine of the angle between them is below this.
+/// Cosine of the angle between two edges at a particle below which they continue one another.
 const CONTINUES: f32 = 0.5;
 
-/// At a particle with more edges of a family than this none continues another.
+/// Number of edges of a family at a particle above which none continues another.
 const FAN: usize = 16;
 
-/// Chains that share no particle. Those that are rings end at the particle where they start.
+/// Chains that share no particle. A ring ends at the particle where it starts.
 #[derive(Debug, Default)]
 pub(super) struct Cover {
-    /// Where each chain starts in `particles` and `edges`; one more than there are chains.
+    /// Start of each chain in `particles` and `edges`; one more than there are chains.
     starts: Vec<usize>,
     particles: Vec<u32>,
-    /// The edge from each particle to the next of its chain, [`NONE`] at its end.
+    /// Edge from each particle to the next of its chain, [`NONE`] at its end.
     edges: Vec<u32>,
 }
 
 impl Cover {
-    /// Chains of one edge each, given with its ends; no two share a particle.
+    /// Chains of one edge each, by their edges and ends; no two share a particle.
     pub(super) fn single(edges: impl Iterator<Item = (u32, [u32; 2])>) -> Self {
         let mut cover = Self {
             starts: vec![0],
@@ -48,7 +48,7 @@ impl Cover {
         particles.len() > 2 && particles.first() == particles.last()
     }
 
-    /// The particles of a chain with the edge from each to the next.
+    /// Particles of a chain, with the edge from each to the next.
     pub(super) fn links(
         &self,
         chain: usize,
@@ -71,16 +71,15 @@ impl Cover {
         })
     }
 
-    /// The sum of the squares of the chains' lengths in edges.
+    /// Sum of the squares of the chains' lengths in edges.
     pub(super) fn weight(&self) -> u64 {
         (0..self.len())
             .map(|chain| (self.particles(chain).len() as u64 - 1).pow(2))
             .sum()
     }
 
-    /// Adds what of a path does not touch a particle in `used`, which are those marked with `pass`, and returns the edges
-    /// left over.
-    fn push(&mut self, path: &Path, used: &mut [u32], pass: u32, left: &mut Vec<u32>) {
+    /// Adds the parts of a path that touch no particle in `used` (marked with `pass`), and returns the edges left over.
+    fn push(&mut self, path: &Walk, used: &mut [u32], pass: u32, left: &mut Vec<u32>) {
         if self.starts.is_empty() {
             self.starts.push(0);
         }
@@ -107,8 +106,8 @@ impl Cover {
         }
     }
 
-    /// Adds a path that is a ring and touches no particle in `used`. Returns whether it is, and does not.
-    fn push_ring(&mut self, path: &Path, used: &mut [u32], pass: u32) -> bool {
+    /// Adds a path that is a ring and touches no particle in `used`. Returns whether it did.
+    fn push_ring(&mut self, path: &Walk, used: &mut [u32], pass: u32) -> bool {
         let Some((last, particles)) = path.particles.split_last() else {
             return false;
         };
@@ -139,7 +138,7 @@ impl Cover {
         true
     }
 
-    /// Ends the chain that began at `start`; a particle alone is none.
+    /// Ends the chain that began at `start`; a single particle is no chain.
     fn end(&mut self, start: usize, used: &mut [u32]) {
         match self.particles.len() - start {
             0 => {}
@@ -156,13 +155,13 @@ impl Cover {
 
 /// A walk along edges that continue one another; may cross itself.
 #[derive(Debug, Default)]
-struct Path {
+struct Walk {
     particles: Vec<u32>,
     edges: Vec<u32>,
 }
 
-/// Takes chains from `edges` and leaves there what shares a particle with them. Longest first; at each particle the
-/// edges that lie most nearly opposite continue one another.
+/// Takes chains from `edges` and leaves there the edges that share a particle with them. Longest first; at each particle the edges that lie
+/// most nearly opposite continue one another.
 ///
 /// `used` has a mark for each particle; `pass` is a mark that none has yet, not 0.
 pub(super) fn cover(
@@ -185,7 +184,7 @@ pub(super) fn cover(
     cover
 }
 
-fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
+fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Walk> {
     let ends = |local: u32| weave.ends[edges[local as usize / 2] as usize];
     let at = |half: u32| ends(half)[half as usize % 2];
     let next = continuations(edges, rest_positions, weave);
@@ -197,7 +196,7 @@ fn paths(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<Path> {
         if seen[start as usize / 2] {
             continue;
         }
-        let mut path = Path {
+        let mut path = Walk {
             particles: vec![at(start)],
             edges: Vec::new(),
         };
@@ -262,10 +261,10 @@ fn continuations(edges: &[u32], rest_positions: &[Vec3], weave: &Weave) -> Vec<u
     next
 }
 
-/// Turns a closed path so that it starts at the particle that lies furthest in a direction along no axis: the starts of
-/// rings side by side come to lie side by side. Its last edge is the one from the lower neighbour.
-fn turn(path: &mut Path, rest_positions: &[Vec3]) {
-    let height = |path: &Path, i: &usize| {
+/// Rotates a closed path so that it starts at the particle that lies furthest in a direction along no axis: rings side by side then start
+/// side by side. Its last edge comes from the neighbour with the lower index.
+fn turn(path: &mut Walk, rest_positions: &[Vec3]) {
+    let height = |path: &Walk, i: &usize| {
         let p = rest_positions[path.particles[*i] as usize];
         p.dot(Vec3::new(0.48, 0.71, 0.52))
     };

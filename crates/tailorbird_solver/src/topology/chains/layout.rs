@@ -1,22 +1,26 @@
-//! Which chains are solved side by side, and how particles are numbered.
+//! Batches of chains that are solved side by side, and the numbering of particles.
 
 use bevy_math::Vec3;
 
 use super::{LANES, NONE, Weave, cover::Cover};
 
-/// Chains of a batch are at least this part of the first one's length, and at most that divided by it.
+/// Least ratio of the lengths of two chains of a batch.
 const SIMILAR: f32 = 0.85;
 
-/// Up to [`LANES`] chains, each with whether it runs from its end to its start.
+/// Up to [`LANES`] chains, each with a flag: it runs from its end to its start.
 #[derive(Debug, Default)]
-pub(super) struct Batch {
+pub(super) struct LaneChains {
     pub(super) lanes: Vec<(usize, bool)>,
-    /// Particles along the longest.
+    /// Particles along the longest chain.
     pub(super) length: usize,
 }
 
-/// Batches of chains that lie side by side on the mesh and run the same way.
-pub(super) fn side_by_side(cover: &Cover, rest_positions: &[Vec3], weave: &Weave) -> Vec<Batch> {
+/// Batches of chains that lie side by side on the mesh and run in the same direction.
+pub(super) fn side_by_side(
+    cover: &Cover,
+    rest_positions: &[Vec3],
+    weave: &Weave,
+) -> Vec<LaneChains> {
     let chord = |chain: usize| {
         let particles = cover.particles(chain);
         let [first, last] = [0, particles.len() - 1].map(|i| rest_positions[particles[i] as usize]);
@@ -34,7 +38,7 @@ pub(super) fn side_by_side(cover: &Cover, rest_positions: &[Vec3], weave: &Weave
 }
 
 /// Batches of chains in the order of their particles' storage numbers.
-pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
+pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<LaneChains> {
     let mut chains: Vec<(u32, usize, bool)> = (0..cover.len())
         .map(|chain| {
             let particles = cover.particles(chain);
@@ -51,9 +55,9 @@ pub(super) fn by_number(cover: &Cover, number: &[u32]) -> Vec<Batch> {
     )
 }
 
-/// Fills batches with chains of similar length, or rings, in the order given as far as that allows.
-fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch> {
-    let mut batches: Vec<Batch> = Vec::new();
+/// Fills batches with chains of similar length, or rings, in the order of the iterator as far as that allows.
+fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<LaneChains> {
+    let mut batches: Vec<LaneChains> = Vec::new();
     // The batches that still have room, with the length of their first chain, and whether it is a ring.
     let mut open: Vec<(usize, f32, bool)> = Vec::new();
     for (chain, reversed) in chains {
@@ -64,7 +68,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
             .position(|(_, like, ring)| fits(*like) && *ring == cover.is_ring(chain))
             .unwrap_or_else(|| {
                 open.push((batches.len(), length as f32, cover.is_ring(chain)));
-                batches.push(Batch::default());
+                batches.push(LaneChains::default());
                 open.len() - 1
             });
         let batch = &mut batches[open[place].0];
@@ -82,7 +86,7 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
     rest.sort_by_key(|(chain, _)| std::cmp::Reverse(cover.particles(*chain).len()));
     batches.retain(|batch| !batch.lanes.is_empty());
     batches.extend(rest.chunks(LANES).map(|lanes| {
-        Batch {
+        LaneChains {
             lanes: lanes.to_vec(),
             length: lanes
                 .iter()
@@ -94,8 +98,13 @@ fn pack(cover: &Cover, chains: impl Iterator<Item = (usize, bool)>) -> Vec<Batch
     batches
 }
 
-/// For each storage number the given one: first the particles of the batches, then the others, each beside its neighbours.
-pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &Weave) -> Vec<u32> {
+/// Original index of each particle in storage order: first the particles of the batches, then the others, each near its neighbours.
+pub(super) fn order(
+    cover: &Cover,
+    batches: &[LaneChains],
+    particles: usize,
+    weave: &Weave,
+) -> Vec<u32> {
     let mut order = Vec::with_capacity(particles);
     let mut number = vec![NONE; particles];
     for batch in batches {
@@ -104,7 +113,7 @@ pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &
                 let chain = cover.particles(chain);
                 if k < chain.len() {
                     let particle = chain[if reversed { chain.len() - 1 - k } else { k }];
-                    // The last of a ring is its first.
+                    // The last particle of a ring is its first.
                     if number[particle as usize] == NONE {
                         number[particle as usize] = order.len() as u32;
                         order.push(particle);
@@ -128,9 +137,9 @@ pub(super) fn order(cover: &Cover, batches: &[Batch], particles: usize, weave: &
     order
 }
 
-/// All chains, each beside the one before it where there is one, with a chain beside it that came before.
+/// All chains in an order in which neighbours follow each other where possible; with each, a chain beside it that comes earlier.
 fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<usize>)> {
-    let beside = Beside::new(cover, particles, weave);
+    let beside = Adjacency::new(cover, particles, weave);
     let mut seen = vec![false; cover.len()];
     let mut walk: Vec<(usize, Option<usize>)> = Vec::with_capacity(cover.len());
     let mut marks = vec![0; cover.len()];
@@ -158,13 +167,13 @@ fn walk(cover: &Cover, particles: usize, weave: &Weave) -> Vec<(usize, Option<us
     walk
 }
 
-/// Which chains lie side by side, with the number of edges between them.
-struct Beside {
+/// Adjacency of chains, with the number of edges between two.
+struct Adjacency {
     starts: Vec<usize>,
     chains: Vec<(u32, u32)>,
 }
 
-impl Beside {
+impl Adjacency {
     fn new(cover: &Cover, particles: usize, weave: &Weave) -> Self {
         let mut chain_of = vec![NONE; particles];
         for chain in 0..cover.len() {
@@ -199,7 +208,7 @@ impl Beside {
         &self.chains[self.starts[chain]..self.starts[chain + 1]]
     }
 
-    /// The chain beside this one with the most edges between them that is not `seen` yet.
+    /// Chain beside this one with the most edges between them that is not `seen` yet.
     fn best(&self, chain: usize, seen: &[bool]) -> Option<usize> {
         let fresh = self.of(chain).iter().filter(|c| !seen[c.0 as usize]);
         fresh
@@ -207,7 +216,7 @@ impl Beside {
             .map(|(chain, _)| *chain as usize)
     }
 
-    /// The chain most steps away. `mark` is one that no chain has yet.
+    /// Chain most steps away. `mark` is one that no chain has yet.
     fn furthest(&self, chain: usize, marks: &mut [usize], mark: usize) -> usize {
         let mut queue = vec![chain];
         marks[chain] = mark;

@@ -6,28 +6,28 @@ use bevy_math::{DVec2, Vec3};
 
 use super::{Geodesics, NONE, next, previous};
 
-/// By how much the slopes of the distance along an edge may contradict a point source \[-\].
+/// Tolerance of the slopes of the distance along an edge, compared with those of a point source \[-\].
 const SLOPE: f64 = 0.02;
-/// By how much an image may be nearer than an end of an edge, as a part of the edge \[-\].
+/// Largest amount by which an image may be nearer than an end of an edge, as a part of the edge \[-\].
 const HIDDEN: f64 = 0.01;
-/// Triangles unfolded beyond the one that is crossed.
+/// Number of triangles unfolded beyond the one that is crossed.
 const UNFOLD: u32 = 32;
-/// Roots of one path that are compared with those of another.
+/// Number of roots of one path that are compared with those of another.
 const CLIMB: u32 = 64;
 
-/// What is known of a particle.
+/// Path to a particle.
 #[derive(Clone, Copy)]
 struct Reached {
-    /// From the source \[m\].
+    /// Distance from the source \[m\].
     distance: f64,
     /// Unit vector in the plane of `triangle` along which its path arrives, backwards; zero at a source.
     toward: Vec3,
     triangle: u32,
     /// The last particle at which its path bends, or its source.
     root: u32,
-    /// Which of the sources.
+    /// Index of the source.
     source: u32,
-    /// Whether the front has passed.
+    /// True once the front has passed.
     done: bool,
 }
 
@@ -35,7 +35,7 @@ struct Reached {
 struct Image {
     root: u32,
     source: u32,
-    /// The distance of the root from the source \[m\].
+    /// Distance of the root from the source \[m\].
     offset: f64,
     /// Roots of the corners that gave the image: a path may have bent there as well.
     bent: [u32; 2],
@@ -45,12 +45,12 @@ struct Image {
 #[derive(Clone, Copy)]
 struct Gate {
     half: u32,
-    /// The ends of the edge, seen from the image \[m\].
+    /// Ends of the edge, seen from the image \[m\].
     left_at: DVec2,
     right_at: DVec2,
-    /// The outermost rays that come through.
+    /// Outermost rays that come through.
     rays: [DVec2; 2],
-    /// Square of the least distance at which one of the gates passed is done \[m²\].
+    /// Square of the least distance, of all gates passed, at which a gate is done \[m²\].
     late: f64,
 }
 
@@ -76,7 +76,7 @@ impl Gate {
     }
 }
 
-/// What is known of every particle, and what is to be looked at next.
+/// Paths to all particles, and the queue of particles to visit.
 pub(super) struct Front<'a> {
     mesh: &'a Geodesics,
     sources: &'a [u32],
@@ -124,7 +124,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The distance \[m\] and the source of each particle.
+    /// Distance \[m\] and source of each particle.
     pub(super) fn run(mut self) -> (Vec<f32>, Vec<u32>) {
         let mesh = self.mesh;
         while let Some(Reverse(entry)) = self.queue.pop() {
@@ -163,7 +163,7 @@ impl<'a> Front<'a> {
         &self.reached[particle as usize]
     }
 
-    /// Along the edge from v, which is done, to p.
+    /// Measures along the edge from v, which is done, to p.
     fn walk(&mut self, v: u32, p: u32, triangle: u32) {
         let from = *self.of(v);
         let back = self.mesh.at(v) - self.mesh.at(p);
@@ -184,7 +184,7 @@ impl<'a> Front<'a> {
         self.improve(p, new);
     }
 
-    /// From the corner of a half-edge, which is a root, through the edge opposite.
+    /// Measures from the corner of a half-edge, which is a root, through the edge opposite.
     fn look_past(&mut self, half: u32) {
         let mesh = self.mesh;
         let [v, p, q] = mesh.corners_from(half);
@@ -203,7 +203,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// From the edge a b of a half-edge, both done, to its corner and beyond.
+    /// Measures from the edge a b of a half-edge, both done, to its corner and beyond.
     fn cross(&mut self, half: u32) {
         let mesh = self.mesh;
         let [_, a, b] = mesh.corners_from(half);
@@ -249,7 +249,7 @@ impl<'a> Front<'a> {
             };
             let offset = self.of(from.root).distance;
             let at = ends[k] + direction * (from.distance - offset);
-            // Nearer than the other end is: something hides the image there.
+            // If the image is nearer than the other end, something hides the image there.
             let hidden = offset + at.distance(ends[1 - k]) < other.distance - HIDDEN * length;
             if !hidden {
                 let image = Image {
@@ -263,7 +263,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// From an image at `at` in the plane of a triangle through its edge.
+    /// Measures from an image at `at` in the plane of a triangle through its edge.
     fn shine(&mut self, image: &Image, half: u32, length: f64, at: DVec2) {
         if at.y < 0.0 {
             let gate = Gate::new(half, -at, DVec2::new(length, 0.0) - at);
@@ -271,10 +271,10 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The direction from which a particle was reached, turned into the plane of a triangle: along its edge and across.
+    /// Direction from which a particle was reached, rotated into the plane of a triangle: along its edge and across.
     ///
-    /// The least rotation that takes one normal, m, to the other, n: exact across parallel creases.
-    /// u′ = u − (m + n) (n·u) / (1 + m·n). `None` where it is not known.
+    /// Uses the least rotation that takes one normal, m, to the other, n: exact across parallel creases. u′ = u − (m + n) (n·u) / (1 +
+    /// m·n). `None` where the direction is not known.
     fn direction(&self, reached: &Reached, triangle: u32, along: Vec3) -> Option<DVec2> {
         let m = self.mesh.normals[reached.triangle as usize];
         let n = self.mesh.normals[triangle as usize];
@@ -286,7 +286,7 @@ impl<'a> Front<'a> {
         })
     }
 
-    /// The last root that two paths have in common.
+    /// Last root that two paths have in common.
     fn common_root(&self, mut a: u32, mut b: u32) -> Option<u32> {
         for _ in 0..CLIMB {
             if a == b {
@@ -306,8 +306,8 @@ impl<'a> Front<'a> {
         None
     }
 
-    /// On through a gate to the corners that may be nearer than the later end of every gate on the way, which cannot
-    /// wait until that is done.
+    /// Continues through a gate to the corners that may be nearer than the later end of every gate passed: they cannot wait until that end
+    /// is done.
     fn look_ahead(&mut self, image: &Image, mut gate: Gate, depth: u32) {
         let mesh = self.mesh;
         if gate.half == NONE || depth > UNFOLD {
@@ -322,7 +322,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// To the corner beyond a gate, laid in the plane, and further.
+    /// Continues to the corner beyond a gate, laid in the plane, and further.
     fn pass(&mut self, image: &Image, gate: &Gate, depth: u32) {
         let mesh = self.mesh;
         let g = mesh.corners[gate.half as usize];

@@ -1,4 +1,4 @@
-//! What the distances must be where they are known, and what must hold of them everywhere.
+//! Distances where they are known, and properties that hold everywhere.
 
 mod curved;
 mod sheet;
@@ -10,7 +10,8 @@ use sheet::{Sheet, Split};
 
 const OVER: f32 = 0.02;
 const UNDER: f32 = 0.001;
-/// From here to there and back, and of waves that meet others, on meshes whose triangles are up to ten times as long as wide.
+/// Relative error between the two directions of a path, and where fronts meet, on meshes whose triangles are up to ten times as long as
+/// wide.
 const SLIVERS: f32 = 0.1;
 
 fn flat(p: Vec2) -> Vec3 {

@@ -1,7 +1,13 @@
 use crate::properties::*;
 
 use super::*;
-use crate::topology::test_meshes::{grid, hash, shuffle};
+use crate::{
+    shape::ClothShape,
+    topology::{
+        Topology,
+        test_meshes::{grid, hash, shuffle},
+    },
+};
 
 fn detect(positions: &[Vec3], triangles: &[[u32; 3]]) -> Option<Recognized> {
     let edges = MeshEdges::new(positions.len(), triangles);
@@ -137,6 +143,40 @@ fn rows_follow_v() {
     assert_eq!((turned.columns, turned.rows), (3, 4));
     assert_eq!(turned.order[..4], [8, 4, 0, 9]);
     assert_eq!(with(|p| Vec2::new(p.x + p.y, p.x - p.y)), None);
+}
+
+/// With a seam of the texture, whose vertices are there twice, and a triangle that is turned around.
+#[test]
+fn a_shape_gives_rows_its_uvs() {
+    let (positions, mut triangles) = grid(4, 3, [1.0, 1.0], |_, _| false);
+    triangles[5].swap(0, 2);
+    let seam = positions.len() as u32;
+    let mut twice = positions.clone();
+    twice.extend(&positions);
+    for triangle in &mut triangles[6..] {
+        *triangle = triangle.map(|i| i + seam);
+    }
+    let with = |uv: fn(Vec3) -> Vec2| {
+        let uvs = twice.iter().enumerate();
+        let shift = |i: usize| Vec2::splat(if i < positions.len() { 0.0 } else { 5.0 });
+        let shape = ClothShape::Mesh {
+            positions: twice.clone(),
+            indices: triangles.as_flattened().to_vec(),
+            uvs: uvs.map(|(i, p)| uv(*p) + shift(i)).collect(),
+            weld_distance: 1e-5,
+        };
+        Topology::build(&shape, Vec3::ONE).expect("valid")
+    };
+    let size = |topology: &Topology| topology.lattice().map(|l| (l.columns, l.rows));
+    let upright = with(|p| Vec2::new(p.x, -p.y));
+    assert_eq!(size(&upright), Some((4, 3)));
+    let turned = with(|p| Vec2::new(p.y, p.x));
+    assert_eq!(size(&turned), Some((3, 4)));
+    assert_eq!(turned.report.turned.count, 1);
+    assert_eq!(size(&with(|_| Vec2::NAN)), Some((4, 3)));
+    let askew = with(|p| Vec2::new(p.x + p.y, p.x - p.y));
+    assert_eq!(size(&askew), None);
+    assert_ne!(askew.revision, upright.revision);
 }
 
 #[test]

@@ -2,11 +2,11 @@
 
 use bevy_math::{Vec2, Vec3};
 
-/// How close the square of a triangle's longest side must come to the sum of the other two squares (or exceed it) for
-/// that side to be a diagonal. 1 is a right angle.
+/// Least ratio of the square of a triangle's longest side to the sum of the other two squares for that side to be a diagonal. 1 is a right
+/// angle.
 const DIAGONAL: f32 = 0.9;
 
-/// The direction in a triangle in which v grows and u is constant; `None` where the coordinates do not tell.
+/// Direction in a triangle in which v grows and u is constant; `None` where the coordinates do not tell.
 pub(super) fn along_v([a, b, c]: [Vec3; 3], [p, q, r]: [Vec2; 3]) -> Option<Vec3> {
     let [first, second] = [q - p, r - p];
     let area = first.perp_dot(second);
@@ -14,20 +14,20 @@ pub(super) fn along_v([a, b, c]: [Vec3; 3], [p, q, r]: [Vec2; 3]) -> Option<Vec3
     told.then(|| ((c - a) * first.x - (b - a) * second.x) * area.signum())
 }
 
-/// The plane of a triangle.
-pub(super) struct Frame {
-    /// Along the first side.
+/// Coordinates in the plane of a triangle.
+pub(super) struct TriangleFrame {
+    /// Unit vector along the first side.
     pub(super) x: Vec3,
     pub(super) y: Vec3,
     pub(super) area: f32,
-    /// The square of the length of each side \[m²\].
+    /// Square of the length of each side \[m²\].
     pub(super) lengths: [f32; 3],
-    /// The square of the direction of each side.
+    /// Square of the direction of each side.
     pub(super) sides: [Vec2; 3],
     pub(super) diagonal: Option<usize>,
 }
 
-impl Frame {
+impl TriangleFrame {
     pub(super) fn new(corners: [Vec3; 3]) -> Self {
         let sides = [0, 1, 2].map(|k| corners[(k + 1) % 3] - corners[k]);
         let normal = sides[0].cross(sides[1]);

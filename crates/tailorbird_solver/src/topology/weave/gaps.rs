@@ -4,14 +4,14 @@ use bevy_math::Vec3;
 
 use super::{EdgeFamily, Leaning, Weave};
 
-/// The cosine of four times the angle to a thread up to which an edge can stand in for it: 40°.
+/// Cosine of four times the largest angle to a thread at which an edge can stand in for it: 40°.
 const NEAR: f32 = -0.94;
 
-/// Edges at a particle leave it the same way where the cosine of the angle between them is above this.
-const SAME_WAY: f32 = 0.25;
+/// Cosine of the angle between two edges at a particle above which they leave it in the same direction.
+const SAME_DIRECTION: f32 = 0.25;
 
-/// Makes edges that lie askew follow a thread where, at both ends, no other edge that does leaves the same way: the one
-/// that lies best first. Else a thread would end there, and what pulls at it would be held by shear alone.
+/// Makes askew edges follow a thread where, at both ends, no other edge that follows it leaves in the same direction: the edge that lies
+/// best first. Else a thread would end there, and its tension would be borne by shear alone.
 pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[Vec3]) {
     let mut gaps: Vec<usize> = (0..leanings.len())
         .filter(|e| weave.family[*e] == EdgeFamily::Shear && leanings[*e].alignment > NEAR)
@@ -49,11 +49,11 @@ pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[V
     for gap in gaps {
         let family = leanings[gap].family;
         let ends_at = |i: u32| {
-            let way = along(weave, gap, i);
+            let direction = along(weave, gap, i);
             edges[starts[i as usize]..starts[i as usize + 1]]
                 .iter()
                 .filter(|e| weave.family[**e] == family)
-                .all(|e| along(weave, *e, i).dot(way) < SAME_WAY)
+                .all(|e| along(weave, *e, i).dot(direction) < SAME_DIRECTION)
         };
         let [a, b] = weave.ends[gap];
         if ends_at(a) && ends_at(b) {

@@ -12,7 +12,7 @@ fn count(weave: &Weave, family: EdgeFamily) -> usize {
     weave.family.iter().filter(|f| **f == family).count()
 }
 
-/// What an edge of a grid in the x-y plane is.
+/// Family of an edge of a grid in the x-y plane.
 fn expected(a: Vec3, b: Vec3) -> EdgeFamily {
     let d = (b - a).abs();
     match (d.x > 1e-4, d.y > 1e-4) {
@@ -130,7 +130,7 @@ fn threads_follow_the_texture() {
         };
         assert_eq!(*family, other);
     }
-    // On the bias the diagonals, which fall to the right, are the warp, and what was warp and weft is shear.
+    // On the bias the diagonals, which fall to the right, are the warp, and the former warp and weft are shear.
     let bias = with(|p| Vec2::new(p.x + p.y, p.x - p.y));
     assert_eq!(count(&bias, EdgeFamily::Warp), 25);
     assert_eq!(count(&bias, EdgeFamily::Shear), 60);

@@ -6,7 +6,7 @@ use bevy_math::{Vec2, Vec3};
 pub struct Sheet {
     pub flat: Vec<Vec2>,
     pub triangles: Vec<[u32; 3]>,
-    /// Of particles.
+    /// Number of particles in a row.
     pub columns: u32,
 }
 
@@ -21,7 +21,7 @@ fn noise(seed: u32) -> f32 {
     x as f32 / u32::MAX as f32 - 0.5
 }
 
-/// Which diagonal a cell is cut along; the other one where that would turn a triangle over.
+/// Diagonal along which a cell is cut; the other one where that would turn a triangle over.
 #[derive(Clone, Copy, Debug)]
 pub enum Split {
     Same,

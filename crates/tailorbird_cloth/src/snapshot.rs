@@ -1,0 +1,143 @@
+//! Snapshots: going back to an earlier step, for rollback and for saved games.
+
+use bevy_ecs::{component::Mutable, prelude::*};
+
+use crate::{
+    attachment::{ClothAttachedParticles, ClothAttachmentForce, ClothAttachmentState},
+    bounds::ClothBounds,
+    collider::ClothColliderState,
+    error::ClothStatus,
+    forces::ClothForces,
+    frame::ClothFrame,
+    grab::ClothGrab,
+    motion::{ClothMotionState, ClothTargetSamples},
+    normals::ClothNormals,
+    particles::ClothParticles,
+    reaction::ClothPinForces,
+    sampling::{ClothFrameClock, ClothSampledMotion},
+    sleep::ClothSleepState,
+    step::ClothStep,
+    tethers::ClothTethers,
+    topology::ClothTopology,
+    wind::ClothWindState,
+};
+
+/// The values of a component, by entity.
+type Values<C> = Vec<(Entity, C)>;
+
+macro_rules! snapshot {
+    (components { $($component:ident: $Component:ty,)* } resources { $($resource:ident: $Resource:ty,)* }) => {
+        /// Everything that the next step depends on and that this crate writes: of all cloths, what holds them, colliders, and the clocks.
+        ///
+        /// A step after [`restore`](Self::restore) gives the same bits as the step after [`take`](Self::take), as long as the game puts
+        /// back what it wrote itself: transforms, its own systems' state, `Time`, and whatever it changed meanwhile of [`Cloth`],
+        /// [`ClothPins`], materials, forces on bodies and the other components that it set. Writing equal values again changes nothing.
+        ///
+        /// Between steps: taken from a system that runs before [`ClothSystems::Prepare`] or after [`ClothSystems::Writeback`]. It takes as
+        /// much memory as the cloths do ([`ClothParticles`] has some 60 bytes a particle); [`take_into`](Self::take_into) uses that of
+        /// an older snapshot again.
+        ///
+        /// Entities are told by their ids, so a snapshot is good for the world that it was taken from, and for another one that spawned the
+        /// same entities in the same order. A cloth that is gone is left out; one that was spawned since stays as it is: despawn it.
+        ///
+        /// ```
+        /// # use bevy_ecs::prelude::*;
+        /// # use tailorbird_cloth::prelude::*;
+        /// # let mut world = World::new();
+        /// let saved = ClothSnapshot::take(&mut world);
+        /// // ... some steps later, when the input of another player turns out to have been another one:
+        /// saved.restore(&mut world);
+        /// ```
+        ///
+        /// [`Cloth`]: crate::cloth::Cloth
+        /// [`ClothPins`]: crate::pins::ClothPins
+        /// [`ClothSystems::Prepare`]: crate::schedule::ClothSystems::Prepare
+        /// [`ClothSystems::Writeback`]: crate::schedule::ClothSystems::Writeback
+        #[derive(Clone, Debug, Default)]
+        pub struct ClothSnapshot {
+            $($component: Values<$Component>,)*
+            $($resource: Option<$Resource>,)*
+        }
+
+        impl ClothSnapshot {
+            /// Notes the state of all cloths of a world.
+            pub fn take(world: &mut World) -> Self {
+                let mut snapshot = Self::default();
+                snapshot.take_into(world);
+                snapshot
+            }
+
+            /// Notes the state of all cloths of a world in the memory of this snapshot.
+            pub fn take_into(&mut self, world: &mut World) {
+                $(take_values(world, &mut self.$component);)*
+                $(self.$resource = world.get_resource::<$Resource>().cloned();)*
+            }
+
+            /// Puts all cloths of a world back to this state.
+            pub fn restore(&self, world: &mut World) {
+                $(restore_values(world, &self.$component);)*
+                $(if let Some(value) = &self.$resource {
+                    world.insert_resource(value.clone());
+                })*
+            }
+        }
+    };
+}
+
+snapshot! {
+    components {
+    particles: ClothParticles,
+    topologies: ClothTopology,
+    frames: ClothFrame,
+    rests: ClothSleepState,
+    tethers: ClothTethers,
+    attached: ClothAttachedParticles,
+    attachments: ClothAttachmentState,
+    attachment_forces: ClothAttachmentForce,
+    limits: ClothMotionState,
+    targets: ClothTargetSamples,
+    grabs: ClothGrab,
+    forces: ClothForces,
+    pin_forces: ClothPinForces,
+    bounds: ClothBounds,
+    normals: ClothNormals,
+    statuses: ClothStatus,
+    motions: ClothSampledMotion,
+    collider_poses: ClothColliderState,
+    }
+    resources {
+    step: ClothStep,
+    wind: ClothWindState,
+    clock: ClothFrameClock,
+    }
+}
+
+fn take_values<C: Component + Clone>(world: &mut World, values: &mut Values<C>) {
+    let mut query = world.query::<(Entity, &C)>();
+    let mut count = 0;
+    for (entity, value) in query.iter(world) {
+        match values.get_mut(count) {
+            Some(known) => {
+                known.0 = entity;
+                known.1.clone_from(value);
+            }
+            None => values.push((entity, value.clone())),
+        }
+        count += 1;
+    }
+    values.truncate(count);
+}
+
+fn restore_values<C: Component<Mutability = Mutable> + Clone>(
+    world: &mut World,
+    values: &Values<C>,
+) {
+    for (entity, value) in values {
+        if let Some(mut current) = world.get_mut::<C>(*entity) {
+            current.clone_from(value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
