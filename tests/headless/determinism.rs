@@ -1,18 +1,14 @@
 //! Two runs give the same bits, and so do 1, 2 and 4 threads, on which several cloths are simulated at the same time.
 
-use std::process::Command;
-
 use bevy::{
     ecs::schedule::Schedules,
     prelude::*,
     tasks::{ComputeTaskPool, TaskPoolBuilder},
 };
 use tailorbird::prelude::*;
+use tailorbird_test::child;
 
 use crate::world::*;
-
-/// Tells the child process on how many threads to simulate.
-const THREADS: &str = "TAILORBIRD_TEST_THREADS";
 
 /// Eight cloths, more particles in all than are simulated on one thread.
 fn crowd() -> u64 {
@@ -39,40 +35,29 @@ fn crowd_in(sim: Sim) -> u64 {
             sim.spawn((square(46 + k), pins, place))
         })
         .collect();
-    sim.step(20);
+    sim.steps(20);
     assert!(sim.app.world().resource::<ClothStep>().parallel());
     cloths
         .into_iter()
-        .fold(0, |bits, cloth| bits.rotate_left(7) ^ sim.bits(cloth))
+        .fold(0, |bits, cloth| bits.rotate_left(7) ^ sim.hash(cloth))
 }
 
 /// Run by the test below in processes of its own, since a process has one pool of threads.
 #[test]
 fn prints_the_bits_of_a_crowd() {
-    let Ok(threads) = std::env::var(THREADS) else {
+    let Some(threads) = child::threads() else {
         return;
     };
-    let threads: usize = threads.parse().unwrap();
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(threads).build());
     let bits = crowd();
     assert_eq!(ComputeTaskPool::get().thread_num(), threads);
-    println!("bits: {bits:016x}");
+    child::tell(bits);
 }
 
-fn bits_on(threads: usize) -> String {
-    let output = Command::new(std::env::current_exe().unwrap())
-        .args([
-            "determinism::prints_the_bits_of_a_crowd",
-            "--exact",
-            "--nocapture",
-        ])
-        .env(THREADS, threads.to_string())
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success(), "{text}");
-    let at = text.find("bits: ").unwrap() + "bits: ".len();
-    text[at..at + 16].to_owned()
+fn bits_on(threads: usize) -> Vec<String> {
+    let bits = child::bits("determinism::prints_the_bits_of_a_crowd", threads);
+    assert_eq!(bits.len(), 1);
+    bits
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn a_pin_is_where_its_bone_is_drawn_and_the_rest_follows_smoothly() {
     let hand = sim.spawn(Transform::default());
     let cloth = sim.spawn(sheet(33));
     attach(&mut sim, cloth, hand, ClothAttachment::edge(ClothEdge::Top));
-    sim.step(20);
+    sim.steps(20);
     let moved = Transform::from_xyz(0.05, 0.1, 0.02).with_rotation(Quat::from_rotation_z(0.1));
     let place = Transform::from_xyz(0.0, 0.01, 0.0).with_rotation(Quat::from_rotation_y(0.03));
     for fraction in [0.0, 0.4, 1.0] {
@@ -84,7 +84,7 @@ fn nothing_is_drawn_elsewhere_where_nothing_moved() {
         hand,
         ClothAttachment::corner(ClothCorner::TopLeft),
     );
-    sim.step(30);
+    sim.steps(30);
     let hand_at = *sim.get::<Transform>(hand);
     let here = Transform::default();
     let still = drawn(&sim, cloth, here, 0.7, |_| None);
@@ -102,7 +102,7 @@ fn each_of_two_targets_moves_its_own_side_and_pins_stay() {
     for (hand, corner) in hands.into_iter().zip(ClothCorner::TOP) {
         attach(&mut sim, cloth, hand, ClothAttachment::corner(corner));
     }
-    sim.step(3);
+    sim.steps(3);
     let here = Transform::default();
     let still = drawn(&sim, cloth, here, 1.0, |_| None);
     let at = drawn(&sim, cloth, here, 1.0, |target| {
@@ -124,7 +124,7 @@ fn where_all_that_holds_it_hopped_the_whole_cloth_is_drawn_there() {
     let hand = sim.spawn(Transform::default());
     let cloth = sim.spawn(sheet(33));
     attach(&mut sim, cloth, hand, ClothAttachment::edge(ClothEdge::Top));
-    sim.step(20);
+    sim.steps(20);
     let here = Transform::default();
     let hopped = Transform::from_xyz(2.0, 0.5, 0.0).with_rotation(Quat::from_rotation_y(1.0));
     let still = drawn(&sim, cloth, here, 1.0, |_| None);

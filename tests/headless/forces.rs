@@ -8,7 +8,7 @@ use crate::world::*;
 fn floating(material: ClothMaterial) -> (Sim, Entity) {
     let mut sim = Sim::vacuum().without_gravity().with_passes(8, 2);
     let cloth = sim.spawn((square(6), material));
-    sim.step(1);
+    sim.steps(1);
     (sim, cloth)
 }
 
@@ -28,7 +28,7 @@ fn a_force_gives_mass_times_acceleration_for_one_step() {
     let (mut sim, cloth) = floating(undamped());
     let force = Vec3::new(0.3, -0.1, 0.2);
     sim.edit::<ClothForces>(cloth, |forces| forces.add_force(14, force));
-    sim.step(1);
+    sim.steps(1);
     let expected = force * DT;
     let momentum = sim.particles(cloth).momentum();
     assert!(
@@ -36,7 +36,7 @@ fn a_force_gives_mass_times_acceleration_for_one_step() {
         "{momentum} {expected}"
     );
     assert!(sim.get::<ClothForces>(cloth).is_empty());
-    sim.step(20);
+    sim.steps(20);
     let momentum = sim.particles(cloth).momentum();
     assert!(
         (momentum - expected).length() < momentum_rounding(21.0),
@@ -57,7 +57,7 @@ fn an_impulse_gives_its_momentum_however_it_is_shared() {
         sim.edit::<ClothForces>(cloth, |forces| {
             forces.add_impulse_at_point(impulse, point, radius);
         });
-        sim.step(1);
+        sim.steps(1);
         let momentum = sim.particles(cloth).momentum();
         assert!(
             (momentum - impulse).length() < 0.15 * SPEED_ROUNDING,
@@ -78,7 +78,7 @@ fn an_acceleration_does_not_depend_on_mass() {
                 forces.add_acceleration(i, Vec3::X * 6.0);
             }
         });
-        sim.step(1);
+        sim.steps(1);
         for v in sim.velocities(cloth) {
             assert!((v - Vec3::X * 0.1).length() < SPEED_ROUNDING, "{v}");
         }
@@ -93,13 +93,13 @@ fn forces_are_in_world_axes() {
         undamped(),
         Transform::from_xyz(5.0, 0.0, 0.0).with_rotation(Quat::from_rotation_y(1.0)),
     ));
-    sim.step(1);
+    sim.steps(1);
     sim.edit::<ClothForces>(cloth, |forces| {
         for i in 0..36 {
             forces.add_acceleration(i, Vec3::X * 6.0);
         }
     });
-    sim.step(1);
+    sim.steps(1);
     let v = sim.weighted_mean(cloth, &sim.velocities(cloth));
     assert!((v - Vec3::X * 0.1).length() < SPEED_ROUNDING, "{v}");
 }
@@ -108,13 +108,13 @@ fn forces_are_in_world_axes() {
 fn pinned_particles_feel_no_force() {
     let mut sim = Sim::vacuum().without_gravity();
     let cloth = sim.spawn((square(6), ClothPins::particles([14])));
-    sim.step(1);
+    sim.steps(1);
     let there = sim.at(cloth, 14);
     sim.edit::<ClothForces>(cloth, |forces| {
         forces.add_force(14, Vec3::X * 100.0);
         forces.add_acceleration(14, Vec3::X * 100.0);
     });
-    sim.step(3);
+    sim.steps(3);
     assert_eq!(sim.at(cloth, 14), there);
 }
 
@@ -133,7 +133,7 @@ fn wrong_forces_are_errors_and_the_others_act() {
             forces.add_acceleration(i, Vec3::X * 6.0);
         }
     });
-    sim.step(1);
+    sim.steps(1);
     assert!(sim.all_finite(cloth));
     let errors = sim.errors(cloth);
     assert_eq!(errors.len(), 6, "{errors:?}");
@@ -149,6 +149,6 @@ fn wrong_forces_are_errors_and_the_others_act() {
     let v = sim.weighted_mean(cloth, &sim.velocities(cloth));
     assert!((v - Vec3::X * 0.1).length() < 2.0 * SPEED_ROUNDING, "{v}");
     // The forces are gone, and with them what was wrong.
-    sim.step(1);
+    sim.steps(1);
     assert!(sim.errors(cloth).is_empty());
 }

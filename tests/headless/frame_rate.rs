@@ -12,7 +12,7 @@ use crate::world::*;
 struct History(Vec<u64>);
 
 fn note(mut history: ResMut<History>, cloth: Query<&ClothParticles>) {
-    history.0.extend(cloth.iter().map(bits_of));
+    history.0.extend(cloth.iter().map(|cloth| hash([cloth])));
 }
 
 fn history(frames_per_second: f64) -> Vec<u64> {
@@ -21,7 +21,7 @@ fn history(frames_per_second: f64) -> Vec<u64> {
     let mut wind = ClothWind::steady(Vec3::new(2.0, 0.0, 6.0));
     wind.gusts.strength = 0.5;
     sim.app.insert_resource(wind);
-    sim.add_systems(FixedLast, note);
+    sim.app.add_systems(FixedLast, note);
     sim.set_frame(Duration::from_secs_f64(1.0 / frames_per_second));
     sim.spawn(ClothCollider::sphere(0.2));
     sim.spawn((
@@ -29,7 +29,7 @@ fn history(frames_per_second: f64) -> Vec<u64> {
         ClothPins::corners(ClothCorner::TOP),
         Transform::from_xyz(0.0, 0.0, -0.3),
     ));
-    sim.step((1.5 * frames_per_second) as usize);
+    sim.frames((1.5 * frames_per_second) as u32);
     sim.app.world().resource::<History>().0.clone()
 }
 

@@ -11,10 +11,10 @@ const STEPS: u32 = 30;
 fn fall(substeps: u32) -> (f32, f32) {
     let mut sim = Sim::vacuum().with_passes(substeps, 2);
     let cloth = sim.spawn((square(5), undamped()));
-    sim.step(1);
+    sim.steps(1);
     let rest = sim.particles(cloth).len();
     assert_eq!(rest, 25);
-    sim.step(STEPS as usize - 1);
+    sim.steps(STEPS - 1);
 
     let n = f64::from(STEPS * substeps);
     let h = 1.0 / HZ / f64::from(substeps);
@@ -55,7 +55,7 @@ fn mass_does_not_matter() {
                 ..material
             },
         ));
-        sim.step(20);
+        sim.steps(20);
         sim.center_of_mass(cloth).y
     };
     let (silk, rubber) = (after(ClothMaterial::silk()), after(ClothMaterial::rubber()));
@@ -77,7 +77,7 @@ fn damping_approaches_the_terminal_velocity_at_any_number_of_substeps() {
                 ..undamped()
             },
         ));
-        sim.step(60);
+        sim.steps(60);
         let speed = -sim.velocities(cloth)[5].y;
         let expected = G / c * (1.0 - (-c).exp());
         let allowed = c * DT / substeps as f32 / 2.0 + 0.005;

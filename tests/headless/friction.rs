@@ -24,11 +24,11 @@ fn slid(angle: f32, cloth_friction: f32, ground_friction: f32) -> f32 {
         material,
         Transform::from_translation(normal * material.thickness).with_rotation(slope * lying()),
     ));
-    sim.step(0);
+    sim.steps(0);
     let downhill = slope * Vec3::X;
-    sim.step(1);
+    sim.steps(1);
     let start = sim.center_of_mass(cloth).dot(downhill);
-    sim.step(59);
+    sim.steps(59);
     sim.center_of_mass(cloth).dot(downhill) - start
 }
 

@@ -1,11 +1,10 @@
-//! The bits of all cloth of each scene of the demo, written down: a change of the code that is to change no behaviour changes none of them.
-//!
-//! `GOLDEN=write` writes them anew, for a change that means to.
+//! The bits of all cloth of each scene of the demo, written down.
 
-use std::{env, fmt::Write, fs, path::Path};
+use std::{fmt::Write, path::Path};
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;
+use tailorbird_test::{golden, hash};
 
 use crate::{
     common::scenes::{SceneCloth, SceneKind},
@@ -19,17 +18,14 @@ const FILE: &str = "tests/headless/golden.txt";
 /// Frames of 1/60 s.
 const FRAMES: usize = 240;
 
-/// FNV-1a, 64 bits, of all coordinates.
-fn hash(app: &mut App) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for cloth in all::<With<SceneCloth>>(app) {
-        for place in get::<ClothParticles>(app, cloth).positions() {
-            for byte in place.to_array().map(f32::to_le_bytes).as_flattened() {
-                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-            }
-        }
-    }
-    hash
+/// Of all cloth of the scene.
+fn bits(app: &mut App) -> u64 {
+    let cloths = all::<With<SceneCloth>>(app);
+    hash(
+        cloths
+            .iter()
+            .map(|cloth| get::<ClothParticles>(app, *cloth)),
+    )
 }
 
 #[test]
@@ -48,12 +44,7 @@ fn scenes_have_the_bits_that_are_written_down() {
         });
         tap(&mut app, KeyCode::KeyR);
         frames(&mut app, FRAMES);
-        writeln!(now, "{:016x} {scene}", hash(&mut app)).expect("a line");
+        writeln!(now, "{:016x} {scene}", bits(&mut app)).expect("a line");
     }
-    if env::var("GOLDEN").is_ok_and(|what| what == "write") {
-        fs::write(path, now).expect("written");
-        return;
-    }
-    let golden = fs::read_to_string(path).expect("the file");
-    assert_eq!(now, golden, "other bits (`GOLDEN=write` writes them down)");
+    golden::check(&path, &now);
 }

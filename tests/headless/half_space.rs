@@ -53,14 +53,14 @@ proptest! {
             square(8),
             Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_scaled_axis(turn)),
         ));
-        sim.step(0);
+        sim.steps(0);
         sim.edit::<ClothForces>(cloth, |forces| {
             for i in 0..64 {
                 forces.add_acceleration(i, speed / DT);
             }
         });
         for _ in 0..10 {
-            sim.step(2);
+            sim.steps(2);
             let (depth, rounding) = deepest(&sim, cloth, plane);
             prop_assert!(depth <= rounding, "{depth:e} m below, {rounding:e} allowed");
         }
@@ -79,7 +79,7 @@ fn a_rising_floor_lifts_the_cloth() {
         for k in 0..20 {
             let plane = Transform::from_xyz(0.0, -0.2 + 20.0 * k as f32 * DT, 0.0);
             sim.edit::<Transform>(floor, |t| *t = plane);
-            sim.step(1);
+            sim.steps(1);
             let (depth, rounding) = deepest(&sim, cloth, plane);
             assert!(
                 depth <= rounding,

@@ -9,19 +9,19 @@ use crate::world::*;
 fn thrown(substeps: u32) -> [(Vec3, Vec3); 2] {
     let mut sim = Sim::vacuum().without_gravity().with_passes(substeps, 2);
     let cloth = sim.spawn((square(9), undamped()));
-    sim.step(0);
+    sim.steps(0);
     sim.edit::<tailorbird::prelude::ClothForces>(cloth, |forces| {
         forces.add_impulse_at_point(Vec3::new(0.0, 0.06, 0.02), Vec3::new(0.4, 0.0, 0.0), 0.3);
         forces.add_impulse_at_point(Vec3::new(0.0, -0.03, 0.0), Vec3::new(-0.4, 0.0, 0.0), 0.3);
     });
     // After the second step wrinkles from the throw are under way.
-    sim.step(2);
+    sim.steps(2);
     let measure = |sim: &Sim| {
         let particles = sim.particles(cloth);
         (particles.momentum(), particles.angular_momentum())
     };
     let before = measure(&sim);
-    sim.step(60);
+    sim.steps(60);
     [before, measure(&sim)]
 }
 

@@ -15,7 +15,7 @@ fn swing(height: f32, substeps: u32) -> (f32, f32) {
         undamped(),
         ClothPins::edges([ClothEdge::Top]),
     ));
-    sim.step(0);
+    sim.steps(0);
     // A push of 0.05 √(g L): swings out by 0.05 rad.
     let speed = 0.05 * (G * height).sqrt();
     sim.edit::<ClothForces>(cloth, |forces| {
@@ -27,7 +27,7 @@ fn swing(height: f32, substeps: u32) -> (f32, f32) {
     let mut heights = vec![0.0f32];
     let mut before = 0.0f32;
     for step in 1..=1200 {
-        sim.step(1);
+        sim.steps(1);
         let z = sim.at(cloth, 2).z;
         if step > 5 && before < 0.0 && z >= 0.0 {
             crossings.push((step as f32 - 1.0 + before / (before - z)) * DT);

@@ -15,7 +15,7 @@ fn pins_hold_at_their_targets_and_the_later_one_counts() {
         .with(ClothPin::at(0, later));
     let cloth = sim.spawn((square(6), pins));
     for _ in 0..60 {
-        sim.step(1);
+        sim.steps(1);
         assert_eq!(sim.at(cloth, 0), later);
         assert_eq!(sim.at(cloth, 5), Vec3::new(0.5, 0.5, 0.0));
     }
@@ -27,18 +27,18 @@ fn pins_hold_at_their_targets_and_the_later_one_counts() {
 fn a_pin_in_flight_holds_the_particle_where_it_was() {
     let mut sim = Sim::new();
     let cloth = sim.spawn(square(6));
-    sim.step(20);
+    sim.steps(20);
     let there = sim.at(cloth, 14);
     assert!(there.y < -0.1);
     sim.edit::<ClothPins>(cloth, |pins| *pins = ClothPins::particles([14]));
     for _ in 0..30 {
-        sim.step(1);
+        sim.steps(1);
         assert_eq!(sim.at(cloth, 14), there);
     }
     // Another pin does not move it, nor does a change of the material.
     sim.edit::<ClothPins>(cloth, |pins| *pins = ClothPins::particles([0, 14]));
     sim.edit::<ClothMaterial>(cloth, |material| *material = ClothMaterial::denim());
-    sim.step(1);
+    sim.steps(1);
     assert_eq!(sim.at(cloth, 14), there);
 }
 
@@ -46,10 +46,10 @@ fn a_pin_in_flight_holds_the_particle_where_it_was() {
 fn what_is_released_falls_freely() {
     let mut sim = Sim::vacuum();
     let cloth = sim.spawn((square(5), undamped(), ClothPins::edges([ClothEdge::Top])));
-    sim.step(5);
+    sim.steps(5);
     sim.edit::<ClothPins>(cloth, |pins| pins.pins.clear());
     let before = sim.weighted_mean(cloth, &sim.velocities(cloth)).y;
-    sim.step(30);
+    sim.steps(30);
     let after = sim.weighted_mean(cloth, &sim.velocities(cloth)).y;
     // Constraints do not change the momentum; gravity gives g t.
     assert!((before - after - G * 0.5).abs() < 0.02, "{before} {after}");
@@ -59,15 +59,15 @@ fn what_is_released_falls_freely() {
 fn what_is_released_keeps_the_velocity_of_its_pin() {
     let mut sim = Sim::vacuum().without_gravity();
     let cloth = sim.spawn((square(4), undamped(), ClothPins::particles(0..16)));
-    sim.step(1);
+    sim.steps(1);
     let speed = Vec3::new(3.0, 0.0, 1.0);
     let start = sim.at(cloth, 5);
     for k in 1..=10 {
         sim.edit::<Transform>(cloth, |t| t.translation = speed * (k as f32 * DT));
-        sim.step(1);
+        sim.steps(1);
     }
     sim.edit::<ClothPins>(cloth, |pins| pins.pins.clear());
-    sim.step(30);
+    sim.steps(30);
     let expected = start + speed * (40.0 * DT);
     assert!(
         sim.at(cloth, 5).distance(expected) < 1e-3,
@@ -80,7 +80,7 @@ fn what_is_released_keeps_the_velocity_of_its_pin() {
 fn what_a_target_moved_keeps_that_velocity_when_released() {
     let mut sim = Sim::vacuum().without_gravity();
     let cloth = sim.spawn((square(4), undamped()));
-    sim.step(1);
+    sim.steps(1);
     let rest = sim.positions(cloth);
     let shifted = |x: f32| ClothPins {
         pins: (0..16)
@@ -89,10 +89,10 @@ fn what_a_target_moved_keeps_that_velocity_when_released() {
     };
     for k in 1..=10 {
         sim.edit::<ClothPins>(cloth, |pins| *pins = shifted(k as f32 * 0.02));
-        sim.step(1);
+        sim.steps(1);
     }
     sim.edit::<ClothPins>(cloth, |pins| pins.pins.clear());
-    sim.step(10);
+    sim.steps(10);
     let moved = sim.at(cloth, 5).x - rest[5].x;
     assert!((moved - 0.4).abs() < 1e-3, "{moved}");
 }
@@ -105,7 +105,7 @@ fn a_pin_out_of_range_is_an_error_and_the_others_hold() {
         .with(ClothPin::new(ClothSelection::Cell(UVec2::new(6, 0))))
         .with(ClothPin::new(ClothSelection::Cell(UVec2::new(5, 0))));
     let cloth = sim.spawn((square(6), pins));
-    sim.step(10);
+    sim.steps(10);
     assert_eq!(sim.particles(cloth).pinned().collect::<Vec<_>>(), [0, 5]);
     let values: Vec<u32> = sim
         .errors(cloth)
@@ -130,7 +130,7 @@ fn selections_name_the_particles_they_say() {
     let cloth = Cloth::grid(Vec2::new(2.0, 1.0), UVec2::new(5, 3));
     let pinned = |sim: &mut Sim, pins: ClothPins| -> Vec<usize> {
         let cloth = sim.spawn((cloth.clone(), pins));
-        sim.step(1);
+        sim.steps(1);
         sim.particles(cloth).pinned().collect()
     };
     assert_eq!(

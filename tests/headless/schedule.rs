@@ -24,7 +24,7 @@ fn no_systems_are_ambiguous() {
     let mut sim = Sim::of(app);
     let cloth = sim.spawn(square(4));
     // Building a schedule with an ambiguity panics.
-    sim.step(3);
+    sim.steps(3);
     assert!(!sim.particles(cloth).is_empty());
 }
 
@@ -36,8 +36,8 @@ fn any_schedule_will_do() {
     let mut sim = Sim::new();
     let [a, b] = [&mut sim, &mut other].map(|sim| {
         let cloth = sim.spawn(square(5));
-        sim.step(20);
-        sim.bits(cloth)
+        sim.steps(20);
+        sim.hash(cloth)
     });
     assert_eq!(a, b);
 }
@@ -55,11 +55,11 @@ fn a_game_can_put_systems_between_the_stages() {
         }
     };
     use ClothSubstepSystems::{Collide, Integrate, Solve};
-    sim.add_systems(
+    sim.app.add_systems(
         ClothSubstep,
         (call("before"), call("moved"), call("solved"), call("after")).chain(),
     );
-    sim.add_systems(
+    sim.app.add_systems(
         ClothSubstep,
         (
             (|| ()).after(Integrate).before(Solve),
@@ -67,7 +67,7 @@ fn a_game_can_put_systems_between_the_stages() {
         ),
     );
     sim.spawn(square(3));
-    sim.step(1);
+    sim.steps(1);
     let expected: Vec<_> = (0..3)
         .flat_map(|k| ["before", "moved", "solved", "after"].map(|name| (k, name)))
         .collect();

@@ -11,33 +11,33 @@ fn paused_cloth_stands_still_and_does_single_steps() {
     let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
     let mut free = Sim::new();
     let other = free.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
-    sim.step(10);
-    free.step(10);
+    sim.steps(10);
+    free.steps(10);
     sim.settings().paused = true;
-    let stands = sim.bits(cloth);
-    sim.step(5);
-    assert_eq!(sim.bits(cloth), stands);
+    let stands = sim.hash(cloth);
+    sim.steps(5);
+    assert_eq!(sim.hash(cloth), stands);
     // The two ends of the interpolation agree.
     let particles = sim.particles(cloth);
     assert_eq!(particles.points(), particles.previous_points());
 
     sim.settings().step_once();
     sim.settings().step_once();
-    sim.step(5);
-    free.step(2);
-    assert_eq!(sim.bits(cloth), free.bits(other));
+    sim.steps(5);
+    free.steps(2);
+    assert_eq!(sim.hash(cloth), free.hash(other));
     assert_eq!(sim.settings().pending_steps, 0);
     sim.settings().paused = false;
-    sim.step(3);
-    free.step(3);
-    assert_eq!(sim.bits(cloth), free.bits(other));
+    sim.steps(3);
+    free.steps(3);
+    assert_eq!(sim.hash(cloth), free.hash(other));
 }
 
 #[test]
 fn cloth_that_is_spawned_while_paused_is_built_and_stands_still() {
     let mut sim = Sim::new().with_settings(|s| s.paused = true);
     let cloth = sim.spawn((square(6), ClothPins::corners(ClothCorner::TOP)));
-    sim.step(3);
+    sim.steps(3);
     let rest = sim.get::<Cloth>(cloth).rest_positions();
     assert_eq!(sim.positions(cloth), rest);
 }
@@ -53,12 +53,12 @@ fn invalid_settings_leave_the_last_valid_ones_in_force() {
     let run = |spoil: Option<fn(&mut ClothSettings)>| {
         let mut sim = Sim::new().with_passes(4, 3);
         let cloth = sim.spawn((square(6), ClothPins::corners([ClothCorner::TopLeft])));
-        sim.step(5);
+        sim.steps(5);
         if let Some(spoil) = spoil {
             spoil(&mut sim.settings());
         }
-        sim.step(20);
-        sim.bits(cloth)
+        sim.steps(20);
+        sim.hash(cloth)
     };
     let valid = run(None);
     for spoil in spoil {
@@ -70,7 +70,7 @@ fn invalid_settings_leave_the_last_valid_ones_in_force() {
 fn invalid_settings_from_the_start_leave_the_defaults_in_force() {
     let mut sim = Sim::new().with_settings(|s| s.gravity = Vec3::NAN);
     let cloth = sim.spawn(square(6));
-    sim.step(20);
+    sim.steps(20);
     assert!(sim.all_finite(cloth) && sim.at(cloth, 0).y < 0.4);
 }
 
@@ -83,7 +83,7 @@ fn without_iterations_particles_fall_freely() {
         ..undamped()
     };
     let cloth = sim.spawn((square(4), free, ClothPins::edges([ClothEdge::Top])));
-    sim.step(30);
+    sim.steps(30);
     let n = 30.0;
     let fallen = -G * DT * DT * n * (n + 1.0) / 2.0;
     let last = sim.at(cloth, 15).y;
@@ -95,16 +95,16 @@ fn a_change_of_the_substeps_keeps_the_velocity() {
     let run = |changes: &[u32]| {
         let mut sim = Sim::vacuum().with_passes(8, 2);
         let cloth = sim.spawn((square(5), undamped()));
-        sim.step(0);
+        sim.steps(0);
         sim.edit::<ClothForces>(cloth, |forces| {
             for i in 0..25 {
                 forces.add_acceleration(i, Vec3::new(2.0, 3.0, 0.0) / DT);
             }
         });
-        sim.step(1);
+        sim.steps(1);
         for &substeps in changes {
             sim.settings().substeps = Some(substeps);
-            sim.step(10);
+            sim.steps(10);
         }
         sim.center_of_mass(cloth)
     };
@@ -125,7 +125,7 @@ fn a_change_of_the_substeps_keeps_the_velocity() {
 #[test]
 fn the_step_tells_what_is_in_force() {
     let mut sim = Sim::new().with_passes(5, 7);
-    sim.step(12);
+    sim.steps(12);
     let step = sim.app.world().resource::<ClothStep>();
     assert_eq!((step.substeps(), step.iterations()), (5, 7));
     assert_eq!(step.steps(), 12);

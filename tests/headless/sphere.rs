@@ -48,14 +48,14 @@ proptest! {
             square(8),
             Transform::from_translation(from).with_rotation(Quat::from_scaled_axis(turn)),
         ));
-        sim.step(0);
+        sim.steps(0);
         sim.edit::<ClothForces>(cloth, |forces| {
             for i in 0..64 {
                 forces.add_acceleration(i, speed / DT);
             }
         });
         for _ in 0..15 {
-            sim.step(2);
+            sim.steps(2);
             let depth = deepest(&sim, cloth, center, radius);
             prop_assert!(depth <= ROUNDING, "{depth:e} m inside");
         }
@@ -118,14 +118,15 @@ fn flown_through(substeps: u32, speed: f32, radius: f32) -> f32 {
         before: Vec::new(),
         deepest: f32::NEG_INFINITY,
     });
-    sim.add_systems(ClothSubstep, chase.after(ClothSubstepSystems::Collide));
+    sim.app
+        .add_systems(ClothSubstep, chase.after(ClothSubstepSystems::Collide));
     // The first step knows no motion yet.
     // Until it is 0.4 m beyond: what it has drawn out to a quarter of the cloth, it goes through.
     let steps = (1.9 / speed * HZ as f32) as usize;
     for k in 1..=steps {
         let now = start + velocity * (k as f32 * DT);
         sim.edit::<Transform>(sphere, |t| t.translation = now);
-        sim.step(1);
+        sim.steps(1);
         assert!(sim.all_finite(cloth));
     }
     sim.app.world().resource::<Chase>().deepest
@@ -157,7 +158,7 @@ fn particles_in_the_way_of_a_fast_sphere_are_pushed_ahead() {
         for k in 0..30 {
             let z = 1.0 - 20.0 * k as f32 * DT;
             sim.edit::<Transform>(sphere, |t| t.translation.z = z);
-            sim.step(1);
+            sim.steps(1);
             // The particle in the middle is in front of the sphere or where it was.
             let middle = sim.at(cloth, 40);
             assert!(middle.z <= z - 0.3 || z > 0.3, "{substeps}: {middle} {z}");
@@ -173,9 +174,9 @@ fn a_sphere_that_jumps_sweeps_up_nothing() {
         ClothCollider::sphere(0.3),
         Transform::from_xyz(0.0, 0.0, 50.0),
     ));
-    sim.step(2);
+    sim.steps(2);
     sim.edit::<Transform>(sphere, |t| t.translation.z = -50.0);
-    sim.step(2);
+    sim.steps(2);
     assert!(sim.positions(cloth).iter().all(|p| p.z.abs() < 1e-6));
 }
 
@@ -189,7 +190,7 @@ fn a_sphere_under_a_scaled_parent_has_the_scaled_radius() {
         square(8),
         Transform::from_xyz(0.0, 0.4, 0.0).with_rotation(lying()),
     ));
-    sim.step(20);
+    sim.steps(20);
     let depth = deepest(&sim, cloth, Vec3::ZERO, 0.3);
     assert!(depth <= ROUNDING && depth > -0.02, "{depth}");
 }

@@ -44,7 +44,7 @@ fn a_hanging_sheet_stays_mirrored() {
         let spacing = 1.0 / (n - 1) as f32;
         let mut worst = 0.0f32;
         for _ in 0..20 {
-            sim.step(6);
+            sim.steps(6);
             let partner = |i: usize| i / n * n + (n - 1 - i % n);
             worst = worst.max(asymmetry(&sim, cloth, partner, LEFT_RIGHT));
         }
@@ -67,7 +67,7 @@ fn a_sheet_on_a_sphere_stays_centered() {
     let spacing = 1.0 / 12.0;
     let mut worst = 0.0f32;
     for step in 0..60 {
-        sim.step(1);
+        sim.steps(1);
         let center = sim.center_of_mass(cloth);
         worst = worst.max(center.x.hypot(center.z));
         if step < 8 {

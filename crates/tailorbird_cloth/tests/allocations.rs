@@ -8,16 +8,12 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-#[path = "chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 use bevy_app::FixedUpdate;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
-use scene::{Scene, Sheet};
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Scene, Sheet, external};
 
 /// Counts what is asked of it.
 struct Counting;
@@ -61,10 +57,11 @@ fn allocations(sheet: &mut Sheet) -> u64 {
 #[test]
 fn cloth_adds_no_allocation_to_an_update() {
     let mut empty = Sheet::new(&Scene::default());
-    empty.app.world_mut().despawn(empty.entity);
+    empty.sim.despawn(empty.entity);
     let without = allocations(&mut empty);
     // A schedule with a system in it allocates as well.
     empty
+        .sim
         .app
         .add_systems(FixedUpdate, |_: Query<&mut Transform>| ());
     let with_a_system = allocations(&mut empty);
@@ -100,7 +97,7 @@ fn cloth_adds_no_allocation_to_an_update() {
         resolution: UVec2::splat(24),
         ..Scene::default()
     });
-    let (cloth, world) = (held.entity, held.app.world_mut());
+    let (cloth, world) = (held.entity, held.sim.app.world_mut());
     let hand = world.spawn(Transform::default()).id();
     let edge = ClothAttachment::edge(ClothEdge::Top);
     let soft = ClothAttachment::edge(ClothEdge::Left).with_compliance(0.01);
@@ -117,7 +114,7 @@ fn cloth_adds_no_allocation_to_an_update() {
         .map(Cloth::rest_positions)
         .unwrap_or_default();
     let mut time = 0.0;
-    held.app.add_systems(
+    held.sim.app.add_systems(
         FixedUpdate,
         move |mut targets: Single<&mut ClothMotionTargets>, mut at: Query<&mut Transform>| {
             time += 0.01;
@@ -140,19 +137,10 @@ fn cloth_adds_no_allocation_to_an_update() {
         (4, ClothSolver::GaussSeidel),
     ] {
         let mut among = among_colliders(substeps);
-        among
-            .app
-            .world_mut()
-            .entity_mut(among.entity)
-            .insert(solver);
+        among.insert(solver);
         let with = allocations(&mut among);
         println!("among colliders, {substeps} substeps of {solver:?}: {with}");
-        let pushed = among
-            .app
-            .world()
-            .resource::<ClothReactions>()
-            .iter()
-            .count();
+        let pushed = among.sim.resource::<ClothReactions>().iter().count();
         assert!(pushed > 5, "{pushed} bodies are pushed");
         assert!(
             with < with_a_system + u64::from(STEPS),
@@ -201,7 +189,7 @@ fn among_colliders(substeps: u32) -> Sheet {
         ..Scene::default()
     });
     let up = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
-    let world = sheet.app.world_mut();
+    let world = sheet.sim.app.world_mut();
     let ground = Transform::from_xyz(0.0, 0.0, -0.4).with_rotation(up);
     world.spawn((ClothCollider::half_space(), ground));
     let place = |k: usize| {
@@ -225,9 +213,9 @@ fn among_colliders(substeps: u32) -> Sheet {
     let bodies: Vec<_> = (0..40).map(|_| world.spawn_empty().id()).collect();
     let shapes: Vec<_> = kinds().into_iter().map(|kind| kind.shape).collect();
     let mut time = 0.0f32;
-    sheet.app.add_systems(
+    sheet.sim.app.add_systems(
         FixedUpdate,
-        move |mut places: Query<&mut Transform>, mut external: ResMut<ClothExternalColliders>| {
+        move |mut places: Query<&mut Transform>, mut colliders: ResMut<ClothExternalColliders>| {
             time += 1.0 / 60.0;
             for (k, entity) in moving.iter().enumerate() {
                 if let Ok(mut at) = places.get_mut(*entity) {
@@ -240,16 +228,11 @@ fn among_colliders(substeps: u32) -> Sheet {
                     let shake = 0.02 * (5.0 * time + k as f32).sin();
                     Isometry3d::new(0.9 * place(k % 25) + Vec3::new(0.1, 0.1, shake), up)
                 };
-                external.push(ClothExternalCollider {
-                    entity: *body,
-                    part: 0,
-                    shape: shapes[k % shapes.len()].clone(),
-                    friction: 0.5,
-                    margin: 0.0,
-                    layers: ClothLayers::ALL,
-                    start: at(time - 1.0 / 60.0),
-                    end: at(time),
-                    body: Some(ClothColliderBody {
+                colliders.push(external(
+                    *body,
+                    shapes[k % shapes.len()].clone(),
+                    [at(time - 1.0 / 60.0), at(time)],
+                    Some(ClothColliderBody {
                         body: *body,
                         inv_mass: Vec3::splat(2.0),
                         inv_inertia: Mat3::IDENTITY * 100.0,
@@ -257,7 +240,7 @@ fn among_colliders(substeps: u32) -> Sheet {
                         linear_velocity: Vec3::ZERO,
                         angular_velocity: Vec3::ZERO,
                     }),
-                });
+                ));
             }
         },
     );

@@ -3,63 +3,46 @@
 
 #![cfg(test)]
 
-use bevy_app::{App, TaskPoolPlugin};
-use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
-use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::{prelude::*, topology::Topology};
+use tailorbird_test::Sim;
 
 /// Vertices and three of them for each triangle.
 type Triangles = (Vec<Vec3>, Vec<u32>);
 
-fn app() -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        TaskPoolPlugin::default(),
-        TimePlugin,
-        ClothPlugin::default(),
-    ));
-    let fixed = Time::<Fixed>::from_hz(60.0);
-    let step = fixed.timestep();
-    app.insert_resource(fixed)
-        .insert_resource(TimeUpdateStrategy::ManualDuration(step))
+fn windy() -> Sim {
+    let mut sim = Sim::new();
+    sim.app
         .insert_resource(ClothWind::steady(Vec3::new(3.0, 0.0, 4.0)));
-    app
+    sim
 }
 
 /// Some steps in wind over a ball and the ground, with one particle held and one pulled; with both solvers.
 fn survives((positions, indices): Triangles) -> Result<(), TestCaseError> {
     let count = positions.len();
     for solver in [ClothSolver::default(), ClothSolver::GaussSeidel] {
-        let mut app = app();
-        app.world_mut()
-            .spawn((ClothCollider::sphere(0.4), Transform::default()));
-        app.world_mut().spawn((
+        let mut sim = windy();
+        sim.spawn((ClothCollider::sphere(0.4), Transform::default()));
+        sim.spawn((
             ClothCollider::half_space(),
             Transform::from_xyz(0.0, -1.0, 0.0),
         ));
         let cloth = Cloth::mesh(positions.clone(), indices.clone());
         let particles = cloth.rest_positions().len();
-        let entity = app
-            .world_mut()
-            .spawn((cloth, solver, ClothPins::particles([0])))
-            .id();
+        let entity = sim.spawn((cloth, solver, ClothPins::particles([0])));
         for step in 0..6 {
             if step == 3 && particles > 1 {
                 // The cloth is thrown about.
-                let mut place = app
-                    .world_mut()
-                    .get_mut::<Transform>(entity)
-                    .expect("a cloth");
-                *place =
+                let place =
                     Transform::from_xyz(40.0, 3.0, -7.0).with_rotation(Quat::from_rotation_z(2.0));
+                sim.move_to(entity, place);
             }
-            app.update();
+            sim.steps(1);
         }
-        let status = app.world().get::<ClothStatus>(entity).expect("a cloth");
-        let state = app.world().get::<ClothParticles>(entity).expect("a cloth");
+        let status = sim.get::<ClothStatus>(entity);
+        let state = sim.particles(entity);
         let refused = status.errors().any(|error| {
             matches!(
                 error,
@@ -77,7 +60,7 @@ fn survives((positions, indices): Triangles) -> Result<(), TestCaseError> {
             status
         );
         prop_assert!(state.positions().all(Vec3::is_finite));
-        let normals = app.world().get::<ClothNormals>(entity).expect("a cloth");
+        let normals = sim.get::<ClothNormals>(entity);
         prop_assert!((0..normals.len()).all(|i| normals.normal(i).is_normalized()));
     }
     Ok(())
@@ -228,24 +211,19 @@ fn a_mesh_without_edges_or_with_equal_corners_neither_hangs_nor_asserts() {
 #[test]
 fn a_moebius_strip_is_reported_and_keeps_its_lengths() {
     let (positions, indices) = twisted(120, 1);
-    let mut app = app();
-    app.insert_resource(ClothWind::vacuum());
-    let entity = app
-        .world_mut()
-        .spawn((
-            Cloth::mesh(positions, indices),
-            ClothPins::particles([0, 1]),
-        ))
-        .id();
-    for _ in 0..120 {
-        app.update();
-    }
-    let topology = app.world().get::<ClothTopology>(entity).expect("a cloth");
+    let mut sim = windy();
+    sim.app.insert_resource(ClothWind::vacuum());
+    let entity = sim.spawn((
+        Cloth::mesh(positions, indices),
+        ClothPins::particles([0, 1]),
+    ));
+    sim.steps(120);
+    let topology = sim.get::<ClothTopology>(entity);
     let report = &topology.report;
     assert_eq!((report.one_sided.count, report.turned.count), (1, 0));
     assert_eq!((report.islands.len(), report.non_manifold.count), (1, 0));
     assert_eq!(report.one_sided.first, 0);
-    let particles = app.world().get::<ClothParticles>(entity).expect("a cloth");
+    let particles = sim.particles(entity);
     let longest = particles.stretch(topology).max;
     assert!(longest < 0.02, "{longest}");
 }
@@ -265,18 +243,15 @@ fn very_light_particles_do_not_explode() {
             *weld_distance = 1e-7;
         }
         for solver in [ClothSolver::default()] {
-            let mut app = app();
+            let mut sim = windy();
             let material = ClothMaterial {
                 areal_density,
                 ..ClothMaterial::cotton()
             };
-            let entity = app
-                .world_mut()
-                .spawn((cloth.clone(), material, solver, ClothPins::particles(0..n)))
-                .id();
+            let entity = sim.spawn((cloth.clone(), material, solver, ClothPins::particles(0..n)));
             for _ in 0..120 {
-                app.update();
-                let particles = app.world().get::<ClothParticles>(entity).expect("a cloth");
+                sim.steps(1);
+                let particles = sim.particles(entity);
                 // From the far end of the row that is held, and a column more.
                 let stretch = 1.1;
                 let reach = stretch * 1.85 * n as f32 * size;
@@ -287,12 +262,7 @@ fn very_light_particles_do_not_explode() {
                     );
                 }
             }
-            assert!(
-                app.world()
-                    .get::<ClothStatus>(entity)
-                    .expect("a cloth")
-                    .is_ok()
-            );
+            assert!(sim.get::<ClothStatus>(entity).is_ok());
         }
     }
 }

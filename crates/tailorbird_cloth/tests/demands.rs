@@ -1,43 +1,16 @@
 //! The scenes of `headless` that ask for more than the fabric has, or do to it what games do every day: whatever is asked, cloth ends in rest.
 //! The bounds are what was measured, with room for other machines; `crates/tailorbird_solver/src/kernels/README.md` has the figures.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
+#![cfg(test)]
 
-use std::{collections::BTreeMap, env, process::Command};
-
-use serde_json::Value;
-
-#[path = "../examples/headless/main.rs"]
+#[path = "headless/example.rs"]
 mod example;
 
-/// The arguments for [`as_the_example`], one on each line.
-const ARGUMENTS: &str = "HEADLESS_ARGUMENTS";
-
-/// Not a test: in a process of its own this is the example, as in `tests/headless/main.rs`.
-#[test]
-fn as_the_example() {
-    if let Ok(arguments) = env::var(ARGUMENTS) {
-        let name = std::iter::once("headless");
-        let code = example::headless(name.chain(arguments.lines()).map(Into::into));
-        std::process::exit(code.into());
-    }
-}
-
-fn report(arguments: &str) -> BTreeMap<String, Value> {
-    let output = Command::new(env::current_exe().unwrap())
-        .args(["--exact", "as_the_example", "--nocapture"])
-        .env(ARGUMENTS, format!("{arguments} --json").replace(' ', "\n"))
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{arguments}: {output:?}");
-    let text = String::from_utf8(output.stdout).unwrap();
-    let (_, json) = text.split_once("running 1 test\n").unwrap();
-    serde_json::from_str(json).unwrap()
-}
+use example::json;
 
 /// Runs a scene, and holds figures below bounds. What is not finite is `null`, and fails.
 fn holds(scene: &str, bounds: &[(&str, f64)]) {
-    let report = report(&format!("--scene {scene}"));
+    let report = json(&format!("--scene {scene}"));
     for (key, most) in bounds {
         let value = report[*key].as_f64();
         println!("{scene}: {key} {value:?}");
@@ -260,7 +233,7 @@ fn a_flag_in_a_storm_flaps() {
     for mesh in MESHES {
         for size in [32, 64] {
             let scene = format!("flag --wind 19,0,6 --steps 420 --mesh {mesh} --size {size}");
-            let report = report(&format!("--scene {scene}"));
+            let report = json(&format!("--scene {scene}"));
             let speed = report["speed_max"].as_f64();
             assert!(
                 speed.is_some_and(|v| (5.0..60.0).contains(&v)),

@@ -2,19 +2,13 @@
 
 #![cfg(test)]
 
-#[path = "chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 use std::f32::consts::PI;
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
-use scene::{G, Scene, Sheet};
 use tailorbird_cloth::prelude::*;
-
-const DT: f32 = 1.0 / 60.0;
+use tailorbird_test::{DT, G, Scene, Sheet, furthest};
 
 /// A curtain in ordinary gravity.
 fn curtain() -> Scene {
@@ -42,29 +36,6 @@ fn with(scene: &Scene, inertia: ClothInertia) -> Sheet {
     sheet
 }
 
-fn positions(sheet: &Sheet) -> Vec<Vec3> {
-    sheet.particles().positions().collect()
-}
-
-fn world(sheet: &Sheet) -> Vec<Vec3> {
-    let frame = sheet.get::<ClothFrame>();
-    let all = sheet.particles().positions();
-    all.map(|p| frame.to_world(p)).collect()
-}
-
-fn difference(a: &[Vec3], b: &[Vec3]) -> f32 {
-    assert_eq!(a.len(), b.len());
-    let ways = a.iter().zip(b).map(|(a, b)| a.distance(*b));
-    ways.fold(0.0, f32::max)
-}
-
-/// The fastest particle [m/s].
-fn fastest(sheet: &Sheet) -> f32 {
-    let particles = sheet.particles();
-    let speeds = (0..particles.len()).map(|i| particles.velocity(i).length());
-    speeds.fold(0.0, f32::max)
-}
-
 fn drive(sheet: &mut Sheet, steps: u32, path: impl Fn(f32) -> Transform) {
     for k in 1..=steps {
         sheet.change(|at: &mut Transform| *at = path(k as f32 * DT));
@@ -88,13 +59,13 @@ fn what_is_not_felt_carries_along() {
     for path in [run, turn] {
         let mut moved = with(&curtain(), ClothInertia::none());
         drive(&mut moved, 90, path);
-        let way = difference(&positions(&still), &positions(&moved));
+        let way = furthest(&still.positions(), &moved.positions());
         println!("{way:e} m");
         assert!(way < 1e-4, "{way} m");
     }
     let mut felt = Sheet::new(&curtain());
     drive(&mut felt, 90, run);
-    assert!(difference(&positions(&still), &positions(&felt)) > 0.1);
+    assert!(furthest(&still.positions(), &felt.positions()) > 0.1);
 }
 
 #[test]
@@ -107,13 +78,13 @@ fn a_part_of_the_way_is_felt() {
                 ..ClothInertia::default()
             },
         );
-        let before = world(&sheet);
+        let before = sheet.world_positions();
         drive(&mut sheet, 60, |t| Transform::from_xyz(3.0 * t, 0.0, 0.0));
-        let way = world(&sheet)[100] - before[100];
+        let way = sheet.world_positions()[100] - before[100];
         let expected = Vec3::X * 3.0 * (1.0 - part);
         assert!(way.distance(expected) < 1e-3, "{part}: {way}");
         // It got there without velocity of its own.
-        let speed = fastest(&sheet);
+        let speed = sheet.fastest();
         // Rounding of places of up to a metre, in an eighth of a step.
         assert!(speed < 3e-3, "{part}: {speed} m/s");
     }
@@ -133,12 +104,12 @@ fn a_turn_that_carries_along_flings() {
         );
         // Each particle by itself.
         sheet.settings(|settings| settings.iterations = 0);
-        sheet.app.insert_resource(ClothWind::vacuum());
-        let before = positions(&sheet)[7 * 16];
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
+        let before = sheet.positions()[7 * 16];
         let steps = 6;
         drive(&mut sheet, steps, turn);
         let time = steps as f32 * DT;
-        let way = positions(&sheet)[7 * 16] - before;
+        let way = sheet.positions()[7 * 16] - before;
         let expected = 0.5 * centrifugal * omega * omega * time * time * before.x.abs();
         let outward = way.dot(before.with_y(0.0).normalize());
         println!("{centrifugal}: {outward} of {expected} m");
@@ -156,9 +127,9 @@ fn no_faster_than_the_limit() {
         };
         let mut sheet = with(&curtain(), inertia);
         drive(&mut sheet, 60, |t| Transform::from_xyz(speed * t, 0.0, 0.0));
-        positions(&sheet)
+        sheet.positions()
     };
-    let way = difference(&at(20.0, 4.0), &at(4.0, f32::INFINITY));
+    let way = furthest(&at(20.0, 4.0), &at(4.0, f32::INFINITY));
     assert!(way < 0.01, "{way} m");
 
     let spun = |speed: f32, limit: f32| {
@@ -171,9 +142,9 @@ fn no_faster_than_the_limit() {
         drive(&mut sheet, 60, |t| {
             Transform::from_rotation(Quat::from_rotation_y(speed * t))
         });
-        positions(&sheet)
+        sheet.positions()
     };
-    let way = difference(&spun(12.0, 2.0), &spun(2.0, f32::INFINITY));
+    let way = furthest(&spun(12.0, 2.0), &spun(2.0, f32::INFINITY));
     assert!(way < 0.01, "{way} m");
 }
 
@@ -182,8 +153,9 @@ fn no_faster_than_the_limit() {
 struct Told(Vec<ClothTeleportMode>);
 
 fn listen(sheet: &mut Sheet) {
-    sheet.app.init_resource::<Told>();
+    sheet.sim.app.init_resource::<Told>();
     sheet
+        .sim
         .app
         .add_observer(|event: On<ClothTeleported>, mut told: ResMut<Told>| {
             told.0.push(event.mode);
@@ -191,7 +163,7 @@ fn listen(sheet: &mut Sheet) {
 }
 
 fn told(sheet: &Sheet) -> &[ClothTeleportMode] {
-    &sheet.app.world().resource::<Told>().0
+    &sheet.sim.resource::<Told>().0
 }
 
 fn far(t: &mut Transform) {
@@ -209,7 +181,7 @@ fn a_teleported_cloth_keeps_its_shape_and_motion() {
         moved.step();
         still.step();
     }
-    assert_eq!(difference(&positions(&moved), &positions(&still)), 0.0);
+    assert_eq!(furthest(&moved.positions(), &still.positions()), 0.0);
     assert_eq!(told(&moved), [ClothTeleportMode::KeepShape]);
 }
 
@@ -226,11 +198,11 @@ fn a_teleported_cloth_is_reset_where_that_is_asked_for() {
         },
     );
     listen(&mut sheet);
-    let rest = positions(&sheet);
+    let rest = sheet.positions();
     sheet.steps(20);
     sheet.change(far);
     sheet.step();
-    let way = difference(&rest, &positions(&sheet));
+    let way = furthest(&rest, &sheet.positions());
     // It has fallen for one step since.
     assert!(way < G * DT * DT, "{way} m");
     assert_eq!(told(&sheet), [ClothTeleportMode::Reset]);
@@ -251,9 +223,9 @@ fn a_short_way_is_a_teleport_where_the_game_says_so() {
     put.change(|frame: &mut ClothFrame| frame.teleport(ClothTeleportMode::KeepShape));
     dragged.steps(20);
     put.steps(20);
-    assert_eq!(difference(&positions(&still), &positions(&put)), 0.0);
+    assert_eq!(furthest(&still.positions(), &put.positions()), 0.0);
     assert_eq!(told(&put), [ClothTeleportMode::KeepShape]);
-    assert!(difference(&positions(&still), &positions(&dragged)) > 1e-3);
+    assert!(furthest(&still.positions(), &dragged.positions()) > 1e-3);
 }
 
 #[test]
@@ -264,10 +236,10 @@ fn a_turn_beyond_the_threshold_is_a_teleport() {
     };
     let mut sheet = with(&weightless(), inertia);
     listen(&mut sheet);
-    let before = positions(&sheet);
+    let before = sheet.positions();
     sheet.change(|t: &mut Transform| t.rotation = Quat::from_rotation_x(PI / 2.0));
     sheet.step();
-    assert!(difference(&before, &positions(&sheet)) < 1e-5);
+    assert!(furthest(&before, &sheet.positions()) < 1e-5);
     assert_eq!(told(&sheet).len(), 1);
 }
 
@@ -283,10 +255,8 @@ fn draped() -> Scene {
 }
 
 fn move_sphere(sheet: &mut Sheet, by: Transform) {
-    let sphere = sheet.sphere.unwrap();
-    let mut sphere = sheet.app.world_mut().entity_mut(sphere);
-    let mut at = sphere.get_mut::<Transform>().unwrap();
-    *at = by * Transform::from_xyz(0.0, 0.0, -0.55);
+    let to = by * Transform::from_xyz(0.0, 0.0, -0.55);
+    sheet.sim.move_to(sheet.sphere.unwrap(), to);
 }
 
 #[test]
@@ -303,7 +273,7 @@ fn a_body_that_is_carried_along_does_not_sweep_the_cloth_up() {
         move_sphere(&mut moved, at);
         moved.step();
     }
-    let way = difference(&positions(&still), &positions(&moved));
+    let way = furthest(&still.positions(), &moved.positions());
     println!("{way} m");
     // Rounding grows where a sheet lies on a sphere; a swept one is off by decimetres.
     assert!(way < 0.03, "{way} m");
@@ -317,14 +287,14 @@ fn a_body_that_is_teleported_with_the_cloth_does_not_sweep_it_up() {
     };
     let mut moved = with(&draped(), inertia);
     moved.steps(60);
-    let before = positions(&moved);
+    let before = moved.positions();
     // 60 m/s: slow for a collider alone.
     let at = Transform::from_xyz(1.0, 0.0, 0.0);
     moved.change(|t: &mut Transform| *t = at);
     move_sphere(&mut moved, at);
     moved.step();
-    let way = difference(&before, &positions(&moved));
-    let speed = fastest(&moved);
+    let way = furthest(&before, &moved.positions());
+    let speed = moved.fastest();
     assert!(way < 0.2 && speed < 12.0, "{way} m, {speed} m/s");
     moved.steps(30);
     assert!(moved.stretch().p99 < 0.02);
@@ -338,11 +308,11 @@ fn time_passes_as_fast_as_it_is_told_to() {
             ..weightless()
         });
         sheet.change(|material: &mut ClothMaterial| material.damping = 0.0);
-        sheet.app.insert_resource(ClothWind::vacuum());
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
         sheet.settings(|settings| settings.time_scale = scale);
-        let before = positions(&sheet)[0];
+        let before = sheet.positions()[0];
         sheet.steps(30);
-        let fallen = before.y - positions(&sheet)[0].y;
+        let fallen = before.y - sheet.positions()[0].y;
         let time = 0.5 * scale;
         let expected = 0.5 * G * time * time;
         assert!(
@@ -364,10 +334,12 @@ fn a_hundred_kilometres_away_everything_is_the_same() {
         let mut sheet = Sheet::new(&curtain());
         let ground = Transform::from_translation(offset - Vec3::Y * 0.25);
         sheet
+            .sim
             .app
             .world_mut()
             .spawn((ClothCollider::half_space(), ground));
         sheet
+            .sim
             .app
             .insert_resource(ClothWind::steady(Vec3::new(1.0, 0.0, 3.0)));
         sheet.change(|frame: &mut ClothFrame| frame.teleport(ClothTeleportMode::KeepShape));
@@ -376,9 +348,9 @@ fn a_hundred_kilometres_away_everything_is_the_same() {
             sheet.change(|t: &mut Transform| *t = at);
             sheet.step();
         }
-        positions(&sheet)
+        sheet.positions()
     };
-    let way = difference(
+    let way = furthest(
         &run(Vec3::ZERO),
         &run(Vec3::new(100_000.0, 0.0, -100_000.0)),
     );
@@ -392,10 +364,10 @@ fn a_scaled_parent_makes_a_larger_cloth() {
         .with_rotation(Quat::from_rotation_y(1.0))
         .with_scale(Vec3::splat(2.5));
     let cloth = sheet.entity;
-    let world = sheet.app.world_mut();
+    let world = sheet.sim.app.world_mut();
     world.spawn(parent).add_child(cloth);
     sheet.steps(2);
-    let positions = positions(&sheet);
+    let positions = sheet.positions();
     let width = positions[0].distance(positions[15]);
     assert!((width - 2.5).abs() < 1e-4, "{width} m");
     let corner = sheet.get::<ClothFrame>().to_world(positions[0]);
@@ -428,7 +400,7 @@ fn wrong_values_are_reported_and_the_last_valid_ones_stay() {
         assert!(complaint.contains(field), "{field}: {complaint}");
         let mut still = Sheet::new(&curtain());
         still.steps(31);
-        assert!(difference(&positions(&sheet), &positions(&still)) < 1e-4);
+        assert!(furthest(&sheet.positions(), &still.positions()) < 1e-4);
         sheet.change(|inertia: &mut ClothInertia| *inertia = ClothInertia::none());
         sheet.step();
         assert_eq!(sheet.complaint(), None);
@@ -438,7 +410,7 @@ fn wrong_values_are_reported_and_the_last_valid_ones_stay() {
     sheet.steps(30);
     let mut still = Sheet::new(&curtain());
     still.steps(30);
-    assert_eq!(difference(&positions(&sheet), &positions(&still)), 0.0);
+    assert_eq!(furthest(&sheet.positions(), &still.positions()), 0.0);
 }
 
 #[test]
@@ -453,7 +425,7 @@ fn both_runners_feel_the_same() {
         };
         let mut sheet = with(&draped(), inertia);
         if game {
-            sheet.app.add_systems(ClothSubstep, || ());
+            sheet.sim.app.add_systems(ClothSubstep, || ());
         }
         drive(&mut sheet, 40, path);
         sheet.hash()

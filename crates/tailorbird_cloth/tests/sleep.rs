@@ -2,16 +2,12 @@
 
 #![cfg(test)]
 
-#[path = "chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 use std::f32::consts::FRAC_PI_2;
 
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
-use scene::{G, Scene, Sheet};
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{G, Scene, Sheet, furthest};
 
 /// A strip that hangs from its upper edge, as it does at rest, and a sphere that it does not touch.
 fn strip() -> Scene {
@@ -31,26 +27,11 @@ fn sleeping() -> Sheet {
     let mut sheet = Sheet::new(&strip());
     for _ in 0..20 {
         sheet.steps(30);
-        if is_asleep(&sheet) {
+        if sheet.is_asleep() {
             return sheet;
         }
     }
     panic!("still awake after 10 s");
-}
-
-fn is_asleep(sheet: &Sheet) -> bool {
-    sheet.get::<ClothSleepState>().is_asleep()
-}
-
-/// Largest displacement of a particle [m].
-fn moved(sheet: &Sheet, from: &[Vec3]) -> f32 {
-    let ways = sheet.particles().positions().zip(from);
-    ways.map(|(to, from)| to.distance(*from))
-        .fold(0.0, f32::max)
-}
-
-fn positions(sheet: &Sheet) -> Vec<Vec3> {
-    sheet.particles().positions().collect()
 }
 
 #[test]
@@ -59,7 +40,7 @@ fn a_cloth_at_rest_falls_asleep_and_stays_as_it_is() {
     let (hash, energy) = (sheet.hash(), sheet.particles().kinetic_energy());
     assert_eq!(energy, 0.0);
     sheet.steps(120);
-    assert!(is_asleep(&sheet));
+    assert!(sheet.is_asleep());
     assert_eq!(sheet.hash(), hash);
 }
 
@@ -74,7 +55,7 @@ fn it_falls_asleep_no_earlier_than_it_is_told() {
         ..strip()
     });
     let mut steps = 0;
-    while !is_asleep(&sheet) {
+    while !sheet.is_asleep() {
         sheet.step();
         steps += 1;
         assert!(steps < 600, "still awake after 10 s");
@@ -89,7 +70,7 @@ fn nothing_sleeps_that_is_not_to() {
         ..strip()
     });
     sheet.steps(600);
-    assert!(!is_asleep(&sheet));
+    assert!(!sheet.is_asleep());
 }
 
 #[test]
@@ -102,19 +83,19 @@ fn a_pendulum_is_awake_at_its_turning_points() {
     });
     for step in 0..300 {
         sheet.step();
-        assert!(!is_asleep(&sheet), "step {step}");
+        assert!(!sheet.is_asleep(), "step {step}");
     }
 }
 
 #[test]
 fn waking_is_no_snap() {
     let mut sheet = sleeping();
-    let before = positions(&sheet);
+    let before = sheet.positions();
     sheet.change::<ClothSleepState>(ClothSleepState::wake);
     for _ in 0..30 {
         sheet.step();
-        assert!(!is_asleep(&sheet));
-        let way = moved(&sheet, &before);
+        assert!(!sheet.is_asleep());
+        let way = furthest(&sheet.positions(), &before);
         assert!(way < 1e-3, "{way} m");
     }
 }
@@ -123,16 +104,15 @@ fn waking_is_no_snap() {
 fn wakes(name: &str, happen: impl FnOnce(&mut Sheet)) {
     let mut sheet = sleeping();
     sheet.steps(3);
-    assert!(is_asleep(&sheet), "{name}: woke by itself");
+    assert!(sheet.is_asleep(), "{name}: woke by itself");
     happen(&mut sheet);
     sheet.step();
-    assert!(!is_asleep(&sheet), "{name}: sleeps on");
+    assert!(!sheet.is_asleep(), "{name}: sleeps on");
 }
 
 fn move_sphere(sheet: &mut Sheet, to: Vec3) {
-    let sphere = sheet.sphere.unwrap();
-    let mut sphere = sheet.app.world_mut().entity_mut(sphere);
-    sphere.get_mut::<Transform>().unwrap().translation = to;
+    let to = Transform::from_translation(to);
+    sheet.sim.move_to(sheet.sphere.unwrap(), to);
 }
 
 #[test]
@@ -141,7 +121,7 @@ fn it_wakes_when_something_happens_to_it() {
         sheet.change(|pins: &mut ClothPins| *pins = ClothPins::corners(ClothCorner::TOP));
     });
     wakes("grab", |sheet| {
-        let hand = positions(sheet)[200] + Vec3::Z * 0.1;
+        let hand = sheet.positions()[200] + Vec3::Z * 0.1;
         sheet.change(|grab: &mut ClothGrab| grab.take(200, 0.05, hand));
     });
     wakes("force", |sheet| {
@@ -165,7 +145,10 @@ fn it_wakes_when_something_happens_to_it() {
     wakes("gravity", |sheet| sheet.settings(|s| s.gravity *= 0.5));
     wakes("substeps", |sheet| sheet.settings(|s| s.substeps = Some(4)));
     wakes("wind", |sheet| {
-        sheet.app.insert_resource(ClothWind::steady(Vec3::Z * 5.0));
+        sheet
+            .sim
+            .app
+            .insert_resource(ClothWind::steady(Vec3::Z * 5.0));
     });
     wakes("sphere comes", |sheet| {
         move_sphere(sheet, Vec3::new(0.0, 0.0, -0.15));
@@ -176,7 +159,7 @@ fn it_wakes_when_something_happens_to_it() {
     });
     wakes("ground appears", |sheet| {
         let at = Transform::from_xyz(0.0, -0.4, 0.0);
-        let world = sheet.app.world_mut();
+        let world = sheet.sim.app.world_mut();
         world.spawn((ClothCollider::half_space(), at));
     });
 }
@@ -188,14 +171,14 @@ fn it_sleeps_on_whatever_happens_elsewhere() {
     move_sphere(&mut sheet, Vec3::new(1.0, 0.0, -1.0));
     sheet.steps(10);
     let wall = Transform::from_xyz(0.0, 0.0, -3.0).with_rotation(Quat::from_rotation_x(FRAC_PI_2));
-    let world = sheet.app.world_mut();
+    let world = sheet.sim.app.world_mut();
     let wall = world.spawn((ClothCollider::half_space(), wall)).id();
     sheet.steps(10);
-    sheet.app.world_mut().despawn(wall);
+    sheet.sim.despawn(wall);
     // The same value again.
     sheet.settings(|_| ());
     sheet.steps(10);
-    assert!(is_asleep(&sheet));
+    assert!(sheet.is_asleep());
     assert_eq!(sheet.hash(), hash);
 }
 
@@ -206,16 +189,16 @@ fn it_rests_on_a_sphere_and_falls_when_that_goes() {
         ..Scene::drape(UVec2::splat(24))
     });
     let mut steps = 0;
-    while !is_asleep(&sheet) {
+    while !sheet.is_asleep() {
         sheet.step();
         steps += 1;
         assert!(steps < 1800, "still awake after 30 s");
     }
-    let before = positions(&sheet);
+    let before = sheet.positions();
     let sphere = sheet.sphere.unwrap();
-    sheet.app.world_mut().despawn(sphere);
+    sheet.sim.despawn(sphere);
     sheet.steps(30);
-    let fallen = moved(&sheet, &before);
+    let fallen = furthest(&sheet.positions(), &before);
     assert!(fallen > 0.5, "{fallen} m in half a second");
 }
 
@@ -232,7 +215,7 @@ fn wrong_settings_are_reported_and_nobody_sleeps_by_them() {
         sheet.steps(200);
         let complaint = sheet.complaint().unwrap_or_default();
         assert!(complaint.contains("ClothSleep.speed"), "{complaint}");
-        assert!(!is_asleep(&sheet), "{speed}");
+        assert!(!sheet.is_asleep(), "{speed}");
     }
 }
 
@@ -244,7 +227,7 @@ fn what_trembles_in_its_creases_falls_asleep() {
             ..Scene::drape(UVec2::splat(n))
         });
         let mut steps = 0;
-        while !is_asleep(&sheet) {
+        while !sheet.is_asleep() {
             sheet.step();
             steps += 1;
             assert!(steps < 1200, "{n}: still awake after 20 s");
@@ -267,7 +250,7 @@ fn lies_still(n: u32) {
         sheet.steps(11 * 60);
         let (mut squares, mut most) = (0.0_f32, 0.0_f32);
         for _ in 0..60 {
-            let before = positions(&sheet);
+            let before = sheet.positions();
             sheet.step();
             let ways = sheet.particles().positions().zip(&before);
             for (to, from) in ways {

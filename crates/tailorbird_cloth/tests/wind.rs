@@ -2,18 +2,14 @@
 
 #![cfg(test)]
 
-#[path = "chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 use std::f32::consts::FRAC_PI_2;
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
-use scene::{Scene, Sheet};
 use tailorbird_cloth::{prelude::*, wind::ClothWindState};
+use tailorbird_test::{Scene, Sheet};
 
 /// A free sheet in still air, without gravity, as wide as it is high, in the plane z = 0 around the origin.
 fn sheet(hz: f64) -> Sheet {
@@ -29,15 +25,11 @@ fn sheet(hz: f64) -> Sheet {
 }
 
 fn blow(sheet: &mut Sheet, zone: ClothWindZone, at: Transform) -> Entity {
-    sheet.app.world_mut().spawn((zone, at)).id()
+    sheet.sim.spawn((zone, at))
 }
 
 fn air(sheet: &Sheet, point: Vec3) -> Vec3 {
-    sheet
-        .app
-        .world()
-        .resource::<ClothWindState>()
-        .velocity_at(point)
+    sheet.sim.resource::<ClothWindState>().velocity_at(point)
 }
 
 /// Mean velocity of the particles whose x is on the given side of 0.
@@ -104,7 +96,7 @@ fn a_zone_turns_moves_and_grows_with_its_entity() {
     sheet.step();
     assert_eq!(air(&sheet, Vec3::new(10.0, 0.0, 1.9)), Vec3::Z * 3.0);
     let mut place = |at: Transform| {
-        *sheet.app.world_mut().get_mut::<Transform>(entity).unwrap() = at;
+        sheet.sim.move_to(entity, at);
         sheet.step();
         [
             Vec3::new(10.0, 0.0, 1.9),
@@ -125,7 +117,7 @@ fn a_zone_turns_moves_and_grows_with_its_entity() {
 #[test]
 fn zones_add_up_and_go_when_they_are_despawned() {
     let mut sheet = sheet(60.0);
-    sheet.app.insert_resource(ClothWind::steady(Vec3::X));
+    sheet.sim.app.insert_resource(ClothWind::steady(Vec3::X));
     let zone = blow(
         &mut sheet,
         ClothWindZone::sphere(1e4, Vec3::Y),
@@ -139,7 +131,7 @@ fn zones_add_up_and_go_when_they_are_despawned() {
     sheet.step();
     assert_eq!(air(&sheet, Vec3::ZERO), Vec3::ONE);
     assert_eq!(air(&sheet, Vec3::Y * 2.0), Vec3::new(1.0, 1.0, 0.0));
-    sheet.app.world_mut().despawn(zone);
+    sheet.sim.despawn(zone);
     sheet.step();
     assert_eq!(air(&sheet, Vec3::ZERO), Vec3::new(1.0, 0.0, 1.0));
 }
@@ -148,7 +140,7 @@ fn zones_add_up_and_go_when_they_are_despawned() {
 fn a_sheet_drifts_with_a_steady_wind_that_is_in_a_zone_as_with_one_that_is_not() {
     let drift = |zone: Option<ClothWindZone>, wind: Vec3| {
         let mut sheet = sheet(60.0);
-        sheet.app.insert_resource(ClothWind::steady(wind));
+        sheet.sim.app.insert_resource(ClothWind::steady(wind));
         if let Some(zone) = zone {
             blow(&mut sheet, zone, Transform::default());
         }
@@ -217,7 +209,7 @@ fn turbulence_is_as_fast_as_it_is_told_and_without_divergence() {
 fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
     let wind = |hz: f64, seed: u32| {
         let mut sheet = sheet(hz);
-        sheet.app.insert_resource(ClothWind {
+        sheet.sim.app.insert_resource(ClothWind {
             gusts: ClothGusts {
                 strength: 0.5,
                 period: 2.0,
@@ -235,7 +227,7 @@ fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
     assert!(slow.distance(wind(60.0, 2)) > 0.1);
 
     let mut sheet = sheet(240.0);
-    sheet.app.insert_resource(ClothWind {
+    sheet.sim.app.insert_resource(ClothWind {
         turbulence: swirling(2.0, 3),
         ..ClothWind::steady(Vec3::X * 3.0)
     });
@@ -262,7 +254,12 @@ fn what_sleeps_wakes_when_a_zone_comes_and_not_for_one_elsewhere() {
     let entity = blow(&mut sheet, zone, Transform::from_xyz(5.0, 0.0, 0.0));
     sheet.steps(10);
     assert!(sheet.get::<ClothSleepState>().is_asleep());
-    let mut place = sheet.app.world_mut().get_mut::<Transform>(entity).unwrap();
+    let mut place = sheet
+        .sim
+        .app
+        .world_mut()
+        .get_mut::<Transform>(entity)
+        .unwrap();
     place.translation.x = 1.0;
     sheet.step();
     assert!(!sheet.get::<ClothSleepState>().is_asleep());
@@ -319,19 +316,20 @@ fn a_wrong_zone_is_reported_and_blows_not() {
         let mut sheet = sheet(60.0);
         let entity = blow(&mut sheet, zone, Transform::default());
         sheet.steps(3);
-        let status = sheet.app.world().get::<ClothStatus>(entity).unwrap();
+        let status = sheet.sim.app.world().get::<ClothStatus>(entity).unwrap();
         let said = status.errors().map(ToString::to_string).collect::<String>();
         assert!(said.contains(field), "{field}: {said}");
         assert_eq!(air(&sheet, Vec3::ZERO), Vec3::ZERO);
         // Mended, it blows.
         *sheet
+            .sim
             .app
             .world_mut()
             .get_mut::<ClothWindZone>(entity)
             .unwrap() = right;
         sheet.step();
         assert_eq!(air(&sheet, Vec3::ZERO), Vec3::X);
-        let status = sheet.app.world().get::<ClothStatus>(entity).unwrap();
+        let status = sheet.sim.app.world().get::<ClothStatus>(entity).unwrap();
         assert_eq!(status.errors().count(), 0);
     }
 }

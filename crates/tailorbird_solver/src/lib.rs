@@ -47,6 +47,8 @@ pub mod particles;
 pub mod points;
 #[doc(hidden)]
 pub mod pose;
+#[cfg(test)]
+mod properties;
 #[doc(hidden)]
 pub mod reaction;
 pub mod shape;

@@ -6,6 +6,7 @@ use fearless_simd::Level;
 use tailorbird_solver::{
     instruction_set::ClothInstructionSet,
     kernels::{
+        aerodynamics::{Air, AirSheet, drag_and_lift_on_sheet},
         breeze::{self, Breeze},
         contact::{Out, Phase, Touching},
         distance,
@@ -13,6 +14,7 @@ use tailorbird_solver::{
         half_space::{self, MovingHalfSpace},
         lanes::{Shared, SharedPoints},
         lattice::{self, Sheet},
+        limit::{self, Backstop, Limits},
         lines::Give,
         normals,
         rigid_motion::RigidMotion,
@@ -279,6 +281,45 @@ fn of_particles(times: &mut Times, level: Level, side: u32) {
         let found = SharedPoints::new(&mut found);
         breeze::add(level, &breeze, SECONDS, &position, found, 0..n * n);
     });
+    let air = Air {
+        wind: Vec3::new(3.0, -1.0, 7.0),
+        density: 1.225,
+        areal_density: 0.15,
+        drag: 1.2,
+        lift: 0.7,
+        seconds: SECONDS,
+    };
+    times.add("drag and lift", 0, || {
+        let air_sheet = AirSheet {
+            lattice: &lattice,
+            position: &position,
+            previous: &previous,
+            inv_mass: &inv_mass,
+            acceleration: SharedPoints::new(&mut found),
+        };
+        drag_and_lift_on_sheet(level, air_sheet, air, 1.0 / SECONDS, 0..n);
+    });
+    let targets = position.clone();
+    let normals: Points = (0..n * n).map(|_| Vec3::Z).collect();
+    let (most, distance, radius) = (vec![0.1; n * n], vec![0.05; n * n], vec![1.0; n * n]);
+    let limits = Limits {
+        targets: [&targets, &targets],
+        fractions: (0.25, 0.5),
+        max_distance: &most,
+        backstop: Some(Backstop {
+            normals: [&normals, &normals],
+            distance: &distance,
+            radius: &radius,
+        }),
+    };
+    times.add("limits", n * n, || {
+        let (position, previous) = (
+            SharedPoints::new(&mut position),
+            SharedPoints::new(&mut previous),
+        );
+        let inv_mass = Shared::new(&mut inv_mass);
+        limit::hold(level, limits, position, previous, inv_mass, 0..n * n);
+    });
 }
 
 /// The classic solver, on all constraints of such a sheet.
@@ -312,7 +353,7 @@ mod tests {
     fn every_kernel_takes_time() {
         for instruction_set in [ClothInstructionSet::Scalar, ClothInstructionSet::Auto] {
             let times = measure(20, instruction_set);
-            assert_eq!(times.len(), 12);
+            assert_eq!(times.len(), 14);
             for time in times {
                 assert!(time.ns_per_particle > 0.0, "{time:?}");
                 let constraints = time.ns_per_constraint();

@@ -2,8 +2,7 @@
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 const LENGTH: f32 = 1.0;
 const COLUMNS: u32 = 4;

@@ -1,20 +1,12 @@
 //! The same bits with any instruction set and any number of threads.
 
-use std::{env, process::Command};
-
 use bevy_ecs::prelude::*;
 use bevy_math::UVec2;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet, child};
 
 /// Sizes that leave remainders in vectors of 4, 8 and 16 lanes.
 const SIZES: [UVec2; 3] = [UVec2::new(5, 7), UVec2::new(17, 33), UVec2::new(50, 50)];
-
-/// Variable with the number of the child's threads.
-const THREADS: &str = "CHAINS_TEST_THREADS";
-
-const MARK: &str = "bits: ";
 
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
@@ -46,7 +38,7 @@ fn every_instruction_set_gives_the_same_bits() {
 /// Not a test: in a process of its own, as a process has one set of threads, this simulates and prints the bits.
 #[test]
 fn as_a_child() {
-    let Ok(threads) = env::var(THREADS) else {
+    let Some(threads) = child::threads() else {
         return;
     };
     let (small, large) = (UVec2::new(17, 33), UVec2::new(150, 131));
@@ -59,14 +51,14 @@ fn as_a_child() {
         (Scene::drape(large), 2),
     ] {
         let mut app = Sheet::new(&Scene {
-            threads: threads.parse().ok(),
+            threads: Some(threads),
             sheets,
             ..scene
         });
         app.steps(60);
-        let parallel = app.app.world().resource::<ClothStep>().parallel();
+        let parallel = app.sim.resource::<ClothStep>().parallel();
         assert_eq!(parallel, sheets > 1);
-        println!("{MARK}{:016x}", app.hash());
+        child::tell(app.hash());
     }
 }
 
@@ -78,14 +70,14 @@ fn systems_of_a_game_between_the_stages_change_nothing() {
     for scene in [Scene::hang(size), Scene::drape(size)] {
         let hash = |with_system: bool| {
             let mut sheet = Sheet::new(&scene);
-            sheet.app.init_resource::<Calls>();
+            sheet.sim.app.init_resource::<Calls>();
             if with_system {
                 let count = |mut calls: ResMut<Calls>| calls.0 += 1;
-                sheet.app.add_systems(ClothSubstep, count);
+                sheet.sim.app.add_systems(ClothSubstep, count);
             }
             sheet.steps(60);
-            let calls = sheet.app.world().resource::<Calls>().0;
-            let substeps = sheet.app.world().resource::<ClothStep>().substeps();
+            let calls = sheet.sim.resource::<Calls>().0;
+            let substeps = sheet.sim.resource::<ClothStep>().substeps();
             assert_eq!(calls, if with_system { 60 * substeps } else { 0 });
             sheet.hash()
         };
@@ -98,19 +90,7 @@ struct Calls(u32);
 
 #[test]
 fn every_number_of_threads_gives_the_same_bits() {
-    let bits = |threads: u32| -> Vec<String> {
-        let output = Command::new(env::current_exe().unwrap())
-            .args(["--exact", "bits::as_a_child", "--nocapture"])
-            .env(THREADS, threads.to_string())
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{output:?}");
-        let text = String::from_utf8(output.stdout).unwrap();
-        text.lines()
-            .filter_map(|line| line.split_once(MARK))
-            .map(|(_, bits)| bits.to_owned())
-            .collect()
-    };
+    let bits = |threads| child::bits("bits::as_a_child", threads);
     let one = bits(1);
     assert_eq!(one.len(), 4);
     for threads in [2, 4] {

@@ -2,8 +2,7 @@
 
 use bevy_math::{DVec3, UVec2, Vec3};
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 /// Throws a sheet without gravity, air and damping: how far momentum and angular momentum get from what they were after the
 /// throw within 10 s, as parts of it.

@@ -2,8 +2,7 @@
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 /// Deflection of the free end below the clamp, by the length, for `weight` = σ g L³/B. Runge–Kutta, and the curvature at the clamp by
 /// bisection.

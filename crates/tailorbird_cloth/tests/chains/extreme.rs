@@ -3,8 +3,7 @@
 use bevy_math::{UVec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 /// State of a sheet afterwards.
 #[derive(Clone, Copy)]
@@ -30,7 +29,7 @@ fn survives(
         sheet.step();
         assert_eq!(sheet.complaint(), None, "{what}, step {step}");
     }
-    sheet.set_hz(60.0);
+    sheet.sim.set_hz(60.0);
     sheet.settings(|settings| settings.gravity = scene.gravity);
     sheet.steps(300);
     assert_eq!(sheet.complaint(), None, "{what}, afterwards");
@@ -88,7 +87,7 @@ fn a_sphere_that_appears_in_the_sheet() {
             _ => Vec3::new(0.0, 0.0, -50.0),
         };
         let sphere = sheet.sphere.unwrap();
-        *sheet.app.world_mut().get_mut(sphere).unwrap() = Transform::from_translation(at);
+        sheet.sim.move_to(sphere, Transform::from_translation(at));
     });
 }
 
@@ -105,7 +104,7 @@ fn steps_of_a_second() {
     let scene = upright(UVec2::splat(32));
     survives("slow", &scene, After::Knotted, 10, |sheet, step| {
         if step == 0 {
-            sheet.set_hz(1.0);
+            sheet.sim.set_hz(1.0);
         }
     });
 }

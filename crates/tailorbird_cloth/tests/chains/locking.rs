@@ -2,11 +2,11 @@
 
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{G, Scene, Sheet, rigid};
 
 use crate::{
     elastica::elastica,
     meshes::{bias_strip, irregular},
-    scene::{G, Scene, Sheet, rigid},
 };
 
 /// Pulls a free strip that stands upright at both ends, with `tension` by width [N/m]: how much longer its middle half gets, as

@@ -13,7 +13,6 @@ mod irregular;
 mod locking;
 mod memory;
 mod meshes;
-mod scene;
 mod stretch;
 mod substeps;
 

@@ -2,8 +2,7 @@
 
 use bevy_math::UVec2;
 use tailorbird_cloth::{prelude::*, tethers::ClothTethers};
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet};
 
 #[test]
 fn a_particle_of_a_grid_takes_94_bytes_and_none_for_tethers() {
@@ -28,9 +27,9 @@ fn sheets_of_one_shape_share_what_follows_from_it() {
         sheets: 5,
         ..Scene::hang(UVec2::splat(8))
     });
-    let mut cloths = sheet.app.world_mut().query::<&ClothTopology>();
+    let mut cloths = sheet.sim.app.world_mut().query::<&ClothTopology>();
     let all: Vec<u64> = cloths
-        .iter(sheet.app.world())
+        .iter(sheet.sim.app.world())
         .map(|topology| topology.revision)
         .collect();
     assert_eq!(all, [all[0]; 5]);
@@ -40,7 +39,7 @@ fn sheets_of_one_shape_share_what_follows_from_it() {
     let after = sheet.get::<ClothTopology>().revision;
     assert!(after > all[0]);
     let kept = cloths
-        .iter(sheet.app.world())
+        .iter(sheet.sim.app.world())
         .filter(|topology| topology.revision == all[0]);
     assert_eq!(kept.count(), 4);
 

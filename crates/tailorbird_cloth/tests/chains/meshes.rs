@@ -2,17 +2,7 @@
 
 use bevy_math::{Vec2, Vec3};
 use tailorbird_cloth::{prelude::*, tethers::ClothTethers};
-
-use crate::scene::{Scene, Sheet};
-
-/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
-fn unit(key: u64) -> f32 {
-    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
-}
+use tailorbird_test::{Scene, Sheet, unit};
 
 /// A sheet around the origin, columns along +x and rows along −y, whose inner vertices are moved by up to a quarter of a cell
 /// each way and whose cells are cut along their shorter diagonals. Vertices of the first `still` rows are moved along x alone.

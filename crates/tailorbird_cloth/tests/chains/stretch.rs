@@ -4,8 +4,7 @@ use std::f32::consts::TAU;
 
 use bevy_math::{UVec2, Vec3};
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet};
+use tailorbird_test::{G, Scene, Sheet};
 
 const SIZE: UVec2 = UVec2::splat(64);
 
@@ -67,12 +66,8 @@ fn substeps_follow_a_storm() {
             wind: storm.clone(),
             ..Scene::hang(SIZE)
         });
-        sheet
-            .app
-            .world_mut()
-            .resource_mut::<ClothSettings>()
-            .substep_budget = budget;
-        let substeps = |sheet: &Sheet| sheet.app.world().resource::<ClothStep>().substeps();
+        sheet.sim.resource_mut::<ClothSettings>().substep_budget = budget;
+        let substeps = |sheet: &Sheet| sheet.sim.resource::<ClothStep>().substeps();
         sheet.step();
         let calm = substeps(&sheet);
         let mut blown = calm;
@@ -80,7 +75,7 @@ fn substeps_follow_a_storm() {
             sheet.step();
             blown = blown.max(substeps(&sheet));
         }
-        sheet.app.insert_resource(ClothWind::vacuum());
+        sheet.sim.app.insert_resource(ClothWind::vacuum());
         sheet.steps(900);
         let after = substeps(&sheet);
         println!("budget {budget}: {calm}, {blown}, {after} substeps");

@@ -2,8 +2,7 @@
 
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec2, Vec3};
 use tailorbird_cloth::{collider::Compound, prelude::*};
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet, external};
 
 #[test]
 fn wrong_measures_are_told() {
@@ -79,7 +78,7 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
         resolution: UVec2::splat(5),
         ..Scene::default()
     });
-    let entity = sheet.app.world_mut().spawn_empty().id();
+    let entity = sheet.sim.spawn(());
     let right = ClothColliderBody {
         body: entity,
         inv_mass: Vec3::ONE,
@@ -91,24 +90,16 @@ fn a_wrong_body_is_told_of_its_entity_and_left_out() {
     let push = |sheet: &mut Sheet, body: ClothColliderBody, at: Vec3| {
         for _ in 0..2 {
             let at = Isometry3d::from_translation(at);
-            let mut external = sheet
-                .app
-                .world_mut()
-                .resource_mut::<ClothExternalColliders>();
-            external.push(ClothExternalCollider {
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
+            colliders.push(external(
                 entity,
-                part: 0,
-                shape: ClothColliderShape::Sphere { radius: 0.3 },
-                friction: 0.5,
-                margin: 0.0,
-                layers: ClothLayers::ALL,
-                start: at,
-                end: at,
-                body: Some(body),
-            });
+                ClothColliderShape::Sphere { radius: 0.3 },
+                [at, at],
+                Some(body),
+            ));
             sheet.steps(1);
         }
-        let world = sheet.app.world();
+        let world = sheet.sim.app.world();
         assert!(world.resource::<ClothExternalColliders>().is_empty());
         let particles = world
             .get::<ClothParticles>(sheet.entity)

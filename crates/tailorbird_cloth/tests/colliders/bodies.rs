@@ -4,8 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet, external};
 
 /// A rigid body, stepped as a physics engine would.
 #[derive(Clone)]
@@ -25,7 +24,7 @@ const STEP: f32 = 1.0 / 60.0;
 impl Body {
     pub fn ball(sheet: &mut Sheet, mass: f32, radius: f32, at: Vec3, velocity: Vec3) -> Self {
         Self {
-            entity: sheet.app.world_mut().spawn_empty().id(),
+            entity: sheet.sim.spawn(()),
             shape: ClothColliderShape::Sphere { radius },
             mass,
             inertia: 0.4 * mass * radius * radius,
@@ -42,19 +41,13 @@ impl Body {
         let center = Vec3::from(start.translation) + self.velocity * STEP;
         let end = Isometry3d::new(center, turn(self.spin * STEP, start.rotation));
         sheet
-            .app
-            .world_mut()
+            .sim
             .resource_mut::<ClothExternalColliders>()
-            .push(ClothExternalCollider {
-                entity: self.entity,
-                part: 0,
-                shape: self.shape.clone(),
-                friction: 0.5,
-                margin: 0.0,
-                layers: ClothLayers::ALL,
-                start,
-                end,
-                body: Some(ClothColliderBody {
+            .push(external(
+                self.entity,
+                self.shape.clone(),
+                [start, end],
+                Some(ClothColliderBody {
                     body: self.entity,
                     inv_mass: Vec3::splat(1.0 / self.mass),
                     inv_inertia: Mat3::from_diagonal(Vec3::splat(1.0 / self.inertia)),
@@ -62,10 +55,10 @@ impl Body {
                     linear_velocity: self.velocity,
                     angular_velocity: self.spin,
                 }),
-            });
+            ));
         sheet.steps(1);
         self.at = end;
-        let reactions = sheet.app.world().resource::<ClothReactions>();
+        let reactions = sheet.sim.resource::<ClothReactions>();
         let reaction = *reactions.get(self.entity)?;
         self.velocity = reaction.linear_velocity;
         self.spin = reaction.angular_velocity;
@@ -92,11 +85,7 @@ impl Body {
 
 /// Momentum, angular momentum and kinetic energy of a sheet.
 pub fn sheet_momenta(sheet: &Sheet) -> ([Vec3; 2], f32) {
-    let particles = sheet
-        .app
-        .world()
-        .get::<ClothParticles>(sheet.entity)
-        .expect("particles");
+    let particles = sheet.particles();
     let (mut p, mut l, mut e) = (Vec3::ZERO, Vec3::ZERO, 0.0);
     for i in 0..particles.len() {
         let (m, v) = (particles.mass(i), particles.velocity(i));
@@ -159,7 +148,7 @@ fn a_ball_that_strikes_a_sheet_loses_what_the_sheet_gets() {
 
 /// Of a sheet at the origin, by gravity.
 fn potential(sheet: &Sheet) -> f32 {
-    let world = sheet.app.world();
+    let world = sheet.sim.app.world();
     let particles = world
         .get::<ClothParticles>(sheet.entity)
         .expect("particles");
@@ -224,7 +213,7 @@ fn a_sheet_that_is_lifted_takes_a_ball_along() {
             speed = (speed + 0.02).min(1.0);
         }
         height += speed * STEP;
-        let mut entity = sheet.app.world_mut().entity_mut(sheet.entity);
+        let mut entity = sheet.sim.app.world_mut().entity_mut(sheet.entity);
         *entity.get_mut::<Transform>().expect("a sheet") = Transform::from_xyz(0.0, 0.0, height);
         let before = ball.at.translation.z;
         ball.step(&mut sheet, gravity);
@@ -249,13 +238,5 @@ fn nothing_is_given_back_twice() {
     );
     assert!((0..5).any(|_| ball.step(&mut sheet, Vec3::ZERO).is_some()));
     sheet.steps(1);
-    assert_eq!(
-        sheet
-            .app
-            .world()
-            .resource::<ClothReactions>()
-            .iter()
-            .count(),
-        0
-    );
+    assert_eq!(sheet.sim.resource::<ClothReactions>().iter().count(), 0);
 }

@@ -3,8 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3, Vec3Swizzles};
 use tailorbird_cloth::{collider::find_contacts, prelude::*};
-
-use crate::scene::{G, Scene, Sheet};
+use tailorbird_test::{G, Scene, Sheet};
 
 /// A solid: where a point is with respect to its surface.
 #[derive(Resource, Clone, Copy)]
@@ -24,7 +23,7 @@ fn collide(own: Res<Own>, mut cloths: SubstepCloths) {
 
 fn with(scene: &Scene, own: fn(Vec3) -> SubstepContact) -> Sheet {
     let mut sheet = Sheet::new(scene);
-    sheet.app.insert_resource(Own(own)).add_systems(
+    sheet.sim.app.insert_resource(Own(own)).add_systems(
         ClothSubstep,
         (
             approach
@@ -34,16 +33,6 @@ fn with(scene: &Scene, own: fn(Vec3) -> SubstepContact) -> Sheet {
         ),
     );
     sheet
-}
-
-fn places(sheet: &Sheet) -> Vec<Vec3> {
-    let world = sheet.app.world();
-    let get = |entity| {
-        let particles = world.get::<ClothParticles>(entity).expect("particles");
-        let frame = world.get::<ClothFrame>(entity).expect("a frame");
-        (0..particles.len()).map(move |i| particles.world_position(i, frame))
-    };
-    get(sheet.entity).collect()
 }
 
 /// A torus about the z axis: radius of the ring, and of its tube \[m\].
@@ -74,7 +63,7 @@ fn a_sheet_that_falls_on_a_torus_stays_out_of_it_and_comes_to_rest() {
     let mut before = Vec::new();
     for step in 0..360 {
         sheet.steps(1);
-        let now = places(&sheet);
+        let now = sheet.world_positions();
         for p in &now {
             let depth = torus(*p).depth;
             assert!(depth < 2e-3, "{depth} m deep at {p} in step {step}");
@@ -82,7 +71,7 @@ fn a_sheet_that_falls_on_a_torus_stays_out_of_it_and_comes_to_rest() {
         before = now;
     }
     sheet.steps(1);
-    let now = places(&sheet);
+    let now = sheet.world_positions();
     let moved = now.iter().zip(&before).map(|(a, b)| a.distance(*b));
     let fastest = 60.0 * moved.fold(0.0, f32::max);
     assert!(fastest < 0.1, "{fastest} m/s");
@@ -118,7 +107,7 @@ fn friction_is_that_of_the_crates_own_solids() {
     let slides = |own: fn(Vec3) -> SubstepContact| {
         let mut sheet = with(&scene, own);
         let middle = |sheet: &Sheet| {
-            let all = places(sheet);
+            let all = sheet.world_positions();
             all.iter().sum::<Vec3>() / all.len() as f32
         };
         sheet.steps(90);
@@ -157,9 +146,9 @@ fn a_surface_that_moves_takes_cloth_along() {
     };
     let mut sheet = with(&scene, belt);
     sheet.steps(90);
-    let start = places(&sheet);
+    let start = sheet.world_positions();
     sheet.steps(60);
-    for (from, to) in start.iter().zip(places(&sheet)) {
+    for (from, to) in start.iter().zip(sheet.world_positions()) {
         let way = to - *from;
         assert!((way.x - SPEED).abs() < 0.02 && way.y.abs() < 0.01, "{way}");
     }
@@ -170,7 +159,7 @@ fn particles_that_are_held_and_places_that_are_none_stay() {
     #[derive(Resource, Default)]
     struct Moved(Vec<(usize, bool, bool)>);
     let mut sheet = Sheet::new(&Scene::hang(UVec2::splat(5)));
-    sheet.app.init_resource::<Moved>().add_systems(
+    sheet.sim.app.init_resource::<Moved>().add_systems(
         ClothSubstep,
         |mut moved: ResMut<Moved>, mut cloths: SubstepCloths| {
             for mut cloth in cloths.iter_mut() {
@@ -185,13 +174,13 @@ fn particles_that_are_held_and_places_that_are_none_stay() {
         },
     );
     sheet.steps(2);
-    let moved = &sheet.app.world().resource::<Moved>().0;
+    let moved = &sheet.sim.resource::<Moved>().0;
     assert!(moved.len() >= 50);
     for (i, nowhere, there) in moved {
         assert!(!nowhere);
         assert_eq!(*there, *i != 0 && *i != 4, "{i}");
     }
-    assert!(places(&sheet).iter().all(|p| p.is_finite()));
+    assert!(sheet.world_positions().iter().all(|p| p.is_finite()));
 }
 
 /// Moving position and previous position alike is a motion without speed.
@@ -203,6 +192,7 @@ fn both_places_moved_alike_change_no_velocity() {
     });
     sheet.steps(1);
     sheet
+        .sim
         .app
         .add_systems(ClothSubstep, |mut cloths: SubstepCloths| {
             for mut cloth in cloths.iter_mut() {
@@ -216,6 +206,7 @@ fn both_places_moved_alike_change_no_velocity() {
     sheet.steps(10);
     let entity = sheet.entity;
     let particles = sheet
+        .sim
         .app
         .world()
         .get::<ClothParticles>(entity)

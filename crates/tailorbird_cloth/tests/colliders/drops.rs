@@ -3,11 +3,9 @@
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Scene, Sheet, rigid};
 
-use crate::{
-    scene::{Scene, Sheet, rigid},
-    shapes::{self, Case},
-};
+use crate::shapes::{self, Case};
 
 fn falling(resolution: u32, speed: f32) -> (Sheet, f32) {
     let scene = Scene {
@@ -30,20 +28,14 @@ fn falling(resolution: u32, speed: f32) -> (Sheet, f32) {
 
 /// The place of each particle relative to a collider.
 fn around(sheet: &Sheet, at: Transform) -> Vec<Vec3> {
-    let world = sheet.app.world();
-    let particles = world
-        .get::<ClothParticles>(sheet.entity)
-        .expect("particles");
-    let frame = world.get::<ClothFrame>(sheet.entity).expect("a frame");
-    let place = |i| particles.world_position(i, frame);
     let local = |p: Vec3| at.rotation.inverse() * (p - at.translation);
-    (0..particles.len()).map(|i| local(place(i))).collect()
+    sheet.world_positions().into_iter().map(local).collect()
 }
 
 fn lands_on(case: &Case, rotation: Quat, speed: f32, steps: u32) {
     let (mut sheet, thickness) = falling(33, speed);
     let at = Transform::from_xyz(0.0, 0.0, -0.9).with_rotation(rotation);
-    sheet.app.world_mut().spawn((case.collider.clone(), at));
+    sheet.sim.app.world_mut().spawn((case.collider.clone(), at));
     let name = case.name;
     let mut touched = false;
     for step in 0..steps {
@@ -98,29 +90,19 @@ fn a_thin_plate_at_20_metres_a_second_takes_the_sheet_along() {
     for collider in [open, ClothCollider::cuboid(0.6, 0.6, 0.02)] {
         let mut z = -0.5f32;
         let plate = sheet
-            .app
-            .world_mut()
-            .spawn((collider, Transform::from_xyz(0.0, 0.0, z)))
-            .id();
+            .sim
+            .spawn((collider, Transform::from_xyz(0.0, 0.0, z)));
         sheet.steps(1);
         for _ in 0..6 {
             z += 20.0 / 60.0;
-            *sheet
-                .app
-                .world_mut()
-                .get_mut::<Transform>(plate)
-                .expect("a plate") = Transform::from_xyz(0.0, 0.0, z);
+            sheet.sim.move_to(plate, Transform::from_xyz(0.0, 0.0, z));
             sheet.steps(1);
         }
         let middle = 16 * 33 + 16;
-        let particles = sheet
-            .app
-            .world()
-            .get::<ClothParticles>(sheet.entity)
-            .expect("particles");
+        let particles = sheet.particles();
         let at = particles.position(middle).z;
         assert!(at > z, "the middle is at {at}, the plate at {z}");
-        sheet.app.world_mut().despawn(plate);
+        sheet.sim.despawn(plate);
         sheet = Sheet::new(&Scene {
             resolution: UVec2::splat(33),
             gravity: Vec3::ZERO,
@@ -142,7 +124,7 @@ fn terrain_carries_a_sheet_and_a_margin_lifts_it() {
         let place = Transform::from_xyz(0.0, 0.0, -0.4)
             .with_rotation(Quat::from_rotation_x(std::f32::consts::FRAC_PI_2));
         let terrain = terrain.clone().with_margin(margin);
-        sheet.app.world_mut().spawn((terrain, place));
+        sheet.sim.app.world_mut().spawn((terrain, place));
         sheet.steps(120);
         let points = around(&sheet, place);
         let above = points.iter().map(|p| p.y - height(p.x, p.z));
@@ -158,9 +140,10 @@ fn terrain_carries_a_sheet_and_a_margin_lifts_it() {
 fn layers_keep_apart_what_does_not_want_to_meet() {
     let bottom = |cloth: ClothLayers, collider: ClothLayers| {
         let (mut sheet, _) = falling(9, 0.0);
-        sheet.app.world_mut().entity_mut(sheet.entity).insert(cloth);
+        sheet.insert(cloth);
         let at = Transform::from_xyz(0.0, 0.0, -0.3);
         sheet
+            .sim
             .app
             .world_mut()
             .spawn((ClothCollider::cuboid(4.0, 4.0, 0.2), at, collider));
@@ -183,7 +166,7 @@ fn scale_counts_along_the_axes_of_a_box_and_of_points() {
     for collider in [ClothCollider::cuboid(1.0, 1.0, 1.0), hull] {
         let (mut sheet, thickness) = falling(17, 0.0);
         let at = Transform::from_xyz(0.0, 0.0, -0.5).with_scale(Vec3::new(4.0, 4.0, 0.4));
-        sheet.app.world_mut().spawn((collider, at));
+        sheet.sim.app.world_mut().spawn((collider, at));
         sheet.steps(90);
         for p in around(&sheet, Transform::IDENTITY) {
             assert!((p.z - (-0.3 + thickness)).abs() < 0.01, "{p}");

@@ -2,10 +2,6 @@
 
 #![cfg(test)]
 
-#[path = "../chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 mod bad_input;
 mod bodies;
 mod custom;

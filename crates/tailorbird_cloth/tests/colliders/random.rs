@@ -4,8 +4,7 @@ use bevy_math::{DVec2, DVec3, EulerRot, Isometry3d, Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet, rigid};
+use tailorbird_test::{Scene, Sheet, rigid};
 
 fn shape() -> impl Strategy<Value = ClothCollider> {
     let length = || prop_oneof![1e-4f32..1e-2, 0.01f32..2.0];
@@ -57,17 +56,14 @@ proptest! {
             resolution: UVec2::splat(9),
             ..Scene::default()
         });
-        let world = sheet.app.world_mut();
-        let entities: Vec<_> = colliders
-            .iter()
-            .map(|(collider, at, _)| world.spawn((collider.clone(), *at)).id())
-            .collect();
+        let world = sheet.sim.app.world_mut();
+        let entities: Vec<_> = colliders.iter().map(|(collider, at, _)| world.spawn((collider.clone(), *at)).id()).collect();
         sheet.steps(3);
         for (entity, (_, _, to)) in entities.iter().zip(&colliders) {
-            *sheet.app.world_mut().get_mut::<Transform>(*entity).expect("a collider") = *to;
+            sheet.sim.move_to(*entity, *to);
         }
         sheet.steps(5);
-        let world = sheet.app.world();
+        let world = sheet.sim.app.world();
         let particles = world.get::<ClothParticles>(sheet.entity).expect("particles");
         prop_assert!(particles.points().iter().all(Vec3::is_finite));
         // Not even for a moment, after which it would have been reset.
@@ -353,25 +349,22 @@ proptest! {
             ..Scene::default()
         });
         let solver = if classic { ClothSolver::GaussSeidel } else { ClothSolver::Chains };
-        sheet.app.world_mut().entity_mut(sheet.entity).insert(solver);
+        sheet.insert(solver);
         // Some begin inside.
-        sheet.app.world_mut().resource_mut::<ClothSettings>().overlap_speed = f32::INFINITY;
+        sheet.sim.resource_mut::<ClothSettings>().overlap_speed = f32::INFINITY;
         let particles = sheet.particles().len() as u32;
         sheet.change(|forces: &mut ClothForces| {
             for i in 0..particles {
                 forces.add_acceleration(i, Vec3::NEG_Z * speed * 60.0);
             }
         });
-        let entities: Vec<_> = things
-            .iter()
-            .map(|thing| {
-                sheet.app.world_mut().spawn((thing.collider(), thing.pose(0.0))).id()
-            })
-            .collect();
+        let entities: Vec<_> = things.iter().map(|thing| {
+                sheet.sim.spawn((thing.collider(), thing.pose(0.0)))
+            }).collect();
         for step in 0..40u8 {
             let poses: Vec<_> = things.iter().map(|thing| thing.pose(f32::from(step) / 60.0)).collect();
             for (entity, pose) in entities.iter().zip(&poses) {
-                *sheet.app.world_mut().get_mut::<Transform>(*entity).expect("a collider") = *pose;
+                sheet.sim.move_to(*entity, *pose);
             }
             sheet.step();
             prop_assert_eq!(sheet.complaint(), None);

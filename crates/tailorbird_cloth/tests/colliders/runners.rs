@@ -3,11 +3,9 @@
 use bevy_math::{Isometry3d, Mat3, UVec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Scene, Sheet, external};
 
-use crate::{
-    scene::{Scene, Sheet},
-    shapes,
-};
+use crate::shapes;
 
 fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]> {
     let mut sheet = Sheet::new(&Scene {
@@ -17,9 +15,9 @@ fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]>
         ..Scene::default()
     });
     if own_stages {
-        sheet.app.add_systems(ClothSubstep, || {});
+        sheet.sim.app.add_systems(ClothSubstep, || {});
     }
-    let world = sheet.app.world_mut();
+    let world = sheet.sim.app.world_mut();
     for (k, case) in shapes::all().into_iter().enumerate() {
         let at = Vec3::new(
             0.35 * (k % 4) as f32 - 0.6,
@@ -34,22 +32,16 @@ fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]>
     for _ in 0..40 {
         let at = Isometry3d::from_translation(Vec3::new(0.5, -0.5, -0.2));
         sheet
-            .app
-            .world_mut()
+            .sim
             .resource_mut::<ClothExternalColliders>()
-            .push(ClothExternalCollider {
+            .push(external(
                 entity,
-                part: 0,
-                shape: ClothColliderShape::Capsule {
+                ClothColliderShape::Capsule {
                     radius: 0.1,
                     half_length: 0.2,
                 },
-                friction: 0.5,
-                margin: 0.0,
-                layers: ClothLayers::ALL,
-                start: at,
-                end: at,
-                body: Some(ClothColliderBody {
+                [at, at],
+                Some(ClothColliderBody {
                     body: entity,
                     inv_mass: Vec3::splat(10.0),
                     inv_inertia: Mat3::IDENTITY * 1000.0,
@@ -57,20 +49,16 @@ fn bits(own_stages: bool, instruction_set: ClothInstructionSet) -> Vec<[u32; 3]>
                     linear_velocity: Vec3::ZERO,
                     angular_velocity: Vec3::ZERO,
                 }),
-            });
+            ));
         sheet.steps(1);
-        let of = sheet.app.world().resource::<ClothReactions>();
+        let of = sheet.sim.resource::<ClothReactions>();
         reactions.extend(
             of.get(entity)
                 .map(|r| r.impulse.to_array().map(f32::to_bits)),
         );
     }
     assert!(!reactions.is_empty(), "the body was met");
-    let particles = sheet
-        .app
-        .world()
-        .get::<ClothParticles>(sheet.entity)
-        .expect("particles");
+    let particles = sheet.particles();
     let places = particles
         .positions()
         .map(|p| p.to_array().map(f32::to_bits));
@@ -102,9 +90,9 @@ fn what_carries_a_body_stays_awake_either_way() {
             ..Scene::default()
         });
         if own_stages {
-            sheet.app.add_systems(ClothSubstep, || {});
+            sheet.sim.app.add_systems(ClothSubstep, || {});
         }
-        let entity = sheet.app.world_mut().spawn_empty().id();
+        let entity = sheet.sim.spawn(());
         let mut pushes = Vec::new();
         for _ in 0..300 {
             let at = Isometry3d::from_translation(Vec3::new(0.0, 0.0, 0.05));
@@ -116,27 +104,19 @@ fn what_carries_a_body_stays_awake_either_way() {
                 linear_velocity: Vec3::ZERO,
                 angular_velocity: Vec3::ZERO,
             };
-            let mut colliders = sheet
-                .app
-                .world_mut()
-                .resource_mut::<ClothExternalColliders>();
-            colliders.push(ClothExternalCollider {
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
+            colliders.push(external(
                 entity,
-                part: 0,
-                shape: ClothColliderShape::Sphere { radius: 0.2 },
-                friction: 0.5,
-                margin: 0.0,
-                layers: ClothLayers::ALL,
-                start: at,
-                end: at,
-                body: Some(body),
-            });
+                ClothColliderShape::Sphere { radius: 0.2 },
+                [at, at],
+                Some(body),
+            ));
             sheet.steps(1);
-            let reactions = sheet.app.world().resource::<ClothReactions>();
+            let reactions = sheet.sim.resource::<ClothReactions>();
             let impulse = reactions.get(entity).map(|reaction| reaction.impulse);
             pushes.push(impulse.map(|impulse| impulse.to_array().map(f32::to_bits)));
         }
-        let rest = sheet.app.world().get::<ClothSleepState>(sheet.entity);
+        let rest = sheet.sim.app.world().get::<ClothSleepState>(sheet.entity);
         (pushes, rest.is_some_and(ClothSleepState::is_asleep))
     };
     let (whole, asleep) = run(false);
@@ -165,35 +145,33 @@ fn what_wakes_a_cloth_is_met_at_once_either_way() {
             ..Scene::default()
         });
         if own_stages {
-            sheet.app.add_systems(ClothSubstep, || {});
+            sheet.sim.app.add_systems(ClothSubstep, || {});
         }
         // So that the list of colliders has something at its places.
         for x in [-5.0, -6.0, -7.0] {
             let far = Transform::from_xyz(x, 0.0, 0.0);
             sheet
+                .sim
                 .app
                 .world_mut()
                 .spawn((ClothCollider::sphere(0.1), far));
         }
         sheet.steps(240);
         let asleep = |sheet: &Sheet| {
-            let rest = sheet.app.world().get::<ClothSleepState>(sheet.entity);
+            let rest = sheet.sim.app.world().get::<ClothSleepState>(sheet.entity);
             rest.is_some_and(ClothSleepState::is_asleep)
         };
         assert!(asleep(&sheet));
         let at = Transform::from_xyz(0.1, 0.05, -0.15);
         sheet
+            .sim
             .app
             .world_mut()
             .spawn((ClothCollider::sphere(0.2), at));
         let mut bits = Vec::new();
         for _ in 0..20 {
             sheet.steps(1);
-            let particles = sheet
-                .app
-                .world()
-                .get::<ClothParticles>(sheet.entity)
-                .expect("particles");
+            let particles = sheet.particles();
             bits.push(
                 particles
                     .positions()

@@ -1,11 +1,10 @@
-//! State hashes of all scenes, written down: a change of the code that is to change no behaviour changes none of them.
-//!
-//! They are the same with every instruction set and number of threads; with another `libm` they may not be. `GOLDEN=write` writes them anew,
-//! for a change that means to.
+//! State hashes of all scenes, written down.
 
-use std::{env, fmt::Write, fs, path::Path};
+use std::{fmt::Write, fs, path::Path};
 
-use crate::json;
+use tailorbird_test::golden;
+
+use crate::example::json;
 
 /// A line for each run: its hash, and its arguments.
 const FILE: &str = "tests/headless/golden.txt";
@@ -17,23 +16,13 @@ const FILE: &str = "tests/headless/golden.txt";
 )]
 fn scenes_have_the_bits_that_are_written_down() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(FILE);
-    let golden = fs::read_to_string(&path).unwrap();
+    let written = fs::read_to_string(&path).unwrap();
     let mut now = String::new();
-    for line in golden.lines() {
+    for line in written.lines() {
         let (_, arguments) = line.split_once(' ').unwrap();
         let report = json(arguments);
         let hash = report["state_hash"].as_str().unwrap();
         writeln!(now, "{hash} {arguments}").unwrap();
     }
-    if env::var("GOLDEN").is_ok_and(|what| what == "write") {
-        fs::write(path, now).unwrap();
-        return;
-    }
-    let changed: Vec<&str> = (now.lines().zip(golden.lines()))
-        .filter_map(|(now, before)| (now != before).then_some(now))
-        .collect();
-    assert!(
-        golden.lines().count() > 0 && changed.is_empty(),
-        "other bits (`GOLDEN=write` writes them down): {changed:#?}"
-    );
+    golden::check(&path, &now);
 }

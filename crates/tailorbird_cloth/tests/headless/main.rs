@@ -1,67 +1,19 @@
 //! The command line of the example `headless`: what it prints and writes, and how it refuses.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
+#![cfg(test)]
 
-use std::{
-    collections::BTreeMap,
-    env, fs,
-    path::{Path, PathBuf},
-    process::{Command, Output},
-};
+use std::{fs, path::PathBuf};
 
-use serde_json::Value;
-
-#[path = "../../examples/headless/main.rs"]
 mod example;
 mod golden;
 
-/// The arguments for [`as_the_example`], one on each line.
-const ARGUMENTS: &str = "HEADLESS_ARGUMENTS";
-
-/// Not a test: in a process of its own, which [`headless`] starts, this is the example. Cargo does not tell tests where
-/// examples are, and a process has one set of threads.
-#[test]
-fn as_the_example() {
-    if let Ok(arguments) = env::var(ARGUMENTS) {
-        let name = std::iter::once("headless");
-        let code = example::headless(name.chain(arguments.lines()).map(Into::into));
-        std::process::exit(code.into());
-    }
-}
-
-/// Runs the example with these arguments, separated by spaces, and a path for `--dump`.
-fn headless_with_dump(arguments: &str, dump: Option<&Path>) -> Output {
-    let dump = dump.map(|path| format!("--dump={}", path.display()));
-    let arguments: Vec<&str> = arguments.split(' ').chain(dump.as_deref()).collect();
-    let mut output = Command::new(env::current_exe().unwrap())
-        .args(["--exact", "as_the_example", "--nocapture"])
-        .env(ARGUMENTS, arguments.join("\n"))
-        .output()
-        .unwrap();
-    // What the test harness says first.
-    let stdout = String::from_utf8(output.stdout).unwrap();
-    let (_, stdout) = stdout.split_once("running 1 test\n").unwrap();
-    output.stdout = stdout.into();
-    output
-}
-
-/// Runs the example with these arguments, separated by spaces.
-fn headless(arguments: &str) -> Output {
-    headless_with_dump(arguments, None)
-}
-
-/// Runs it with `--json`.
-fn json(arguments: &str) -> BTreeMap<String, Value> {
-    let output = headless(&format!("{arguments} --json"));
-    assert!(output.status.success(), "{arguments}: {output:?}");
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+use example::{json, run};
 
 /// Runs it with `--dump`, and reads step, row, column and x, y, z.
 fn dump(name: &str, arguments: &str) -> Vec<([usize; 3], [f64; 3])> {
     // Each test has names of its own.
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let output = headless_with_dump(arguments, Some(&path));
+    let output = run(&format!("{arguments} --dump={}", path.display()));
     assert!(output.status.success(), "{arguments}: {output:?}");
     let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -130,7 +82,7 @@ fn json_has_the_keys_and_their_types() {
 
 #[test]
 fn the_table_names_the_same_figures() {
-    let output = headless("--size 8 --steps 5 --scene drape");
+    let output = run("--size 8 --steps 5 --scene drape");
     let text = String::from_utf8(output.stdout).unwrap();
     for name in [
         "constraints",
@@ -271,7 +223,7 @@ fn wrong_values_are_named_with_their_flag_and_end_with_code_2() {
         ("--dump", "/nowhere/dump.csv"),
     ];
     for (flag, value) in wrong {
-        let output = headless(&format!("{flag} {value}"));
+        let output = run(&format!("{flag} {value}"));
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{flag} {value}: {message}");
         assert!(message.contains(flag), "{flag} {value}: {message}");
@@ -281,6 +233,6 @@ fn wrong_values_are_named_with_their_flag_and_end_with_code_2() {
         );
         assert!(output.stdout.is_empty(), "{flag} {value}");
     }
-    let every = headless("--size 2 --dump dump.csv --dump-every 0");
+    let every = run("--size 2 --dump dump.csv --dump-every 0");
     assert_eq!(every.status.code(), Some(2));
 }

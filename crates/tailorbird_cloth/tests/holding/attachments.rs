@@ -5,8 +5,9 @@ use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{DT, G, Path};
 
-use crate::world::{DT, G, Path, World, rope, square};
+use crate::world::{rope, square, vacuum};
 
 /// Spins and flies: 10 m/s, 10 rad/s.
 fn wild(t: f32) -> Transform {
@@ -16,7 +17,7 @@ fn wild(t: f32) -> Transform {
 
 #[test]
 fn the_one_line_of_the_guide_works() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
     let cloth = world.spawn((
         square(9),
@@ -36,13 +37,13 @@ fn the_one_line_of_the_guide_works() {
 #[test]
 fn an_edge_follows_a_fast_spinning_target_without_lag() {
     for solver in [ClothSolver::Chains, ClothSolver::GaussSeidel] {
-        let mut world = World::new();
-        let hand = world.spawn((wild(0.0), Path(Box::new(wild))));
+        let mut world = vacuum();
+        let hand = world.spawn((wild(0.0), Path::new(wild)));
         let cloth = world.spawn((square(17), solver));
         world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
         // The same, pinned to a frame that moves so.
         let pins = ClothPins::edges([ClothEdge::Top]);
-        let pinned = world.spawn((square(17), solver, pins, wild(0.0), Path(Box::new(wild))));
+        let pinned = world.spawn((square(17), solver, pins, wild(0.0), Path::new(wild)));
         let local = |i: usize| Vec3::new(i as f32 / 16.0 - 0.5, 0.5, 0.0);
         let mut stretch = [0.0f32; 2];
         for step in 1..=120 {
@@ -77,7 +78,7 @@ fn an_edge_follows_a_fast_spinning_target_without_lag() {
 
 #[test]
 fn bones_carry_their_scale_and_their_parents() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let parent = world.spawn(
         Transform::from_xyz(1.0, 2.0, 3.0)
             .with_scale(Vec3::new(2.0, 1.0, 1.0))
@@ -109,9 +110,9 @@ fn bones_carry_their_scale_and_their_parents() {
 
 #[test]
 fn a_cloth_whose_entity_moves_is_held_in_the_world() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
-    let cloth = world.spawn((square(9), Transform::default(), Path(Box::new(wild))));
+    let cloth = world.spawn((square(9), Transform::default(), Path::new(wild)));
     world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(1);
     let start = world.at(cloth, 0);
@@ -129,7 +130,7 @@ fn a_cloth_whose_entity_moves_is_held_in_the_world() {
 
 #[test]
 fn a_rope_between_two_bones_hangs_as_a_catenary() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let bones = [0.0, 0.6].map(|x| world.spawn(Transform::from_xyz(x, 2.0, 0.0)));
     let cloth = world.spawn((rope(), Transform::from_xyz(0.0, 2.0, 0.0)));
     for (bone, edge) in bones.into_iter().zip([ClothEdge::Top, ClothEdge::Bottom]) {
@@ -170,9 +171,9 @@ fn a_rope_between_two_bones_hangs_as_a_catenary() {
 fn a_released_particle_keeps_its_velocity() {
     let throw = |t: f32| Transform::from_xyz(2.0 * t, 3.0 * t, 0.0);
     for despawn_target in [false, true] {
-        let mut world = World::new();
+        let mut world = vacuum();
         world.record::<ClothAttachmentBroken>();
-        let hand = world.spawn((throw(0.0), Path(Box::new(throw))));
+        let hand = world.spawn((throw(0.0), Path::new(throw)));
         let cloth = world.spawn(square(5));
         let all = ClothAttachment::within(Vec3::ZERO, 2.0);
         let attachment = world.attach(cloth, hand, all);
@@ -202,7 +203,7 @@ fn a_released_particle_keeps_its_velocity() {
 
 #[test]
 fn attachments_go_with_their_cloth_and_not_with_their_target() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hands = [0.0, 1.0].map(|x| world.spawn(Transform::from_xyz(x, 0.0, 0.0)));
     let cloth = world.spawn(square(5));
     let attachments =
@@ -220,7 +221,7 @@ fn attachments_go_with_their_cloth_and_not_with_their_target() {
 
 #[test]
 fn pins_count_before_attachments_and_later_attachments_before_earlier_ones() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hands = [1.0, 2.0].map(|x| world.spawn(Transform::from_xyz(x, 0.0, 0.0)));
     let cloth = world.spawn((square(5), ClothPins::particles([0])));
     let at = |points| ClothAttachment::particles(points).with_points([Vec3::ZERO]);
@@ -241,7 +242,7 @@ fn pins_count_before_attachments_and_later_attachments_before_earlier_ones() {
 
 #[test]
 fn a_target_that_is_put_elsewhere_takes_its_particles_along_without_speed() {
-    let mut world = World::new().without_gravity();
+    let mut world = vacuum().without_gravity();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(9));
     world.attach(cloth, hand, ClothAttachment::within(Vec3::ZERO, 2.0));
@@ -257,7 +258,7 @@ fn a_cloth_jumps_with_all_that_holds_it() {
     let elsewhere = Transform::from_xyz(50.0, 5.0, -20.0).with_rotation(Quat::from_rotation_y(1.0));
     for entity_jumps in [false, true] {
         let mut worlds = [false, true].map(|jumps| {
-            let mut world = World::new();
+            let mut world = vacuum();
             let hand = world.spawn(Transform::default());
             let cloth = world.spawn(square(9));
             world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
@@ -288,17 +289,13 @@ fn a_cloth_jumps_with_all_that_holds_it() {
 
 #[test]
 fn another_offset_target_or_selection_is_reached_at_thirty_metres_a_second() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hands = [0.5, 0.7].map(|x| world.spawn(Transform::from_xyz(x, 0.0, 0.0)));
     let cloth = world.spawn(square(5));
     let attachment = world.attach(cloth, hands[0], ClothAttachment::particles([0]));
     world.steps(3);
     let start = world.at(cloth, 0);
-    world
-        .app
-        .world_mut()
-        .entity_mut(attachment)
-        .insert(ClothAttachedTo(hands[1]));
+    world.insert(attachment, ClothAttachedTo(hands[1]));
     world.steps(1);
     // It keeps its place at the new one.
     assert!(world.at(cloth, 0).distance(start) < 1e-6);
@@ -322,7 +319,7 @@ fn another_offset_target_or_selection_is_reached_at_thirty_metres_a_second() {
 
 #[test]
 fn a_rebuilt_grid_stays_attached() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0));
     let cloth = world.spawn(square(9));
     world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
@@ -347,7 +344,7 @@ proptest! {
     fn particles_are_where_their_target_is(
         ways in prop::collection::vec(([-3.0f32..3.0, -3.0f32..3.0, -3.0f32..3.0], -3.0f32..3.0), 1..12),
     ) {
-        let mut world = World::new();
+        let mut world = vacuum();
         let hand = world.spawn(Transform::default());
         let cloth = world.spawn(square(8));
         let points = [Vec3::ZERO, Vec3::X * 0.3];

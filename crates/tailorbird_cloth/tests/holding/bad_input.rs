@@ -5,17 +5,18 @@ use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::Sim;
 
-use crate::world::{World, square};
+use crate::world::{square, vacuum};
 
 /// A cloth that hangs by one corner at a hand.
-fn hung() -> (World, Entity, Entity, Entity) {
-    let mut world = World::new();
+fn hung() -> (Sim, Entity, Entity, Entity) {
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
     let attachment = world.attach(cloth, hand, ClothAttachment::corner(ClothCorner::TopLeft));
     world.steps(3);
-    assert!(world.errors(attachment).is_empty());
+    assert!(world.complaints(attachment).is_empty());
     (world, cloth, hand, attachment)
 }
 
@@ -39,7 +40,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
         let (mut world, cloth, _, attachment) = hung();
         world.edit::<ClothAttachment>(attachment, change);
         world.steps(5);
-        let errors = world.errors(attachment);
+        let errors = world.complaints(attachment);
         assert!(
             errors.len() == 1 && errors[0].contains(name),
             "{name}: {errors:?}"
@@ -49,7 +50,7 @@ fn wrong_values_are_named_and_the_last_valid_ones_hold() {
             *held = ClothAttachment::corner(ClothCorner::TopLeft);
         });
         world.steps(1);
-        assert!(world.errors(attachment).is_empty(), "{name}");
+        assert!(world.complaints(attachment).is_empty(), "{name}");
     }
 }
 
@@ -60,7 +61,7 @@ fn a_selection_that_is_wrong_is_left_out() {
         held.selections.push(ClothSelection::Particle(25));
     });
     world.steps(60);
-    let errors = world.errors(attachment);
+    let errors = world.complaints(attachment);
     assert!(
         errors.len() == 1 && errors[0].contains("ClothAttachment names particle 25"),
         "{errors:?}"
@@ -74,34 +75,30 @@ fn a_target_that_is_nowhere_holds_where_it_was() {
         let (mut world, cloth, hand, attachment) = hung();
         world.move_to(hand, Transform::from_translation(broken));
         world.steps(5);
-        assert!(world.errors(attachment)[0].contains("GlobalTransform"));
+        assert!(world.complaints(attachment)[0].contains("GlobalTransform"));
         assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
         world.move_to(hand, Transform::from_xyz(0.1, 0.0, 0.0));
         world.steps(1);
-        assert!(world.errors(attachment).is_empty());
+        assert!(world.complaints(attachment).is_empty());
         assert!(world.at(cloth, 0).distance(CORNER + Vec3::X * 0.1) < 1e-6);
     }
     let (mut world, cloth, hand, attachment) = hung();
     world.app.world_mut().entity_mut(hand).remove::<Transform>();
     world.steps(2);
-    assert!(world.errors(attachment)[0].contains("no Transform"));
+    assert!(world.complaints(attachment)[0].contains("no Transform"));
     assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
-    world.move_transform(hand, Vec3::ZERO);
+    world.insert(hand, Transform::default());
     world.steps(1);
-    assert!(world.errors(attachment).is_empty());
+    assert!(world.complaints(attachment).is_empty());
 }
 
 #[test]
 fn another_target_that_is_nowhere_changes_nothing_until_it_is_somewhere() {
     let (mut world, cloth, _, attachment) = hung();
     let nowhere = world.spawn(Transform::from_translation(Vec3::NAN));
-    world
-        .app
-        .world_mut()
-        .entity_mut(attachment)
-        .insert(ClothAttachedTo(nowhere));
+    world.insert(attachment, ClothAttachedTo(nowhere));
     world.steps(3);
-    assert!(world.errors(attachment)[0].contains("GlobalTransform"));
+    assert!(world.complaints(attachment)[0].contains("GlobalTransform"));
     assert!(world.at(cloth, 0).distance(CORNER) < 1e-6);
     // Its particles may be others meanwhile.
     world.edit::<Cloth>(cloth, |cloth| {
@@ -110,39 +107,28 @@ fn another_target_that_is_nowhere_changes_nothing_until_it_is_somewhere() {
     world.steps(3);
     world.move_to(nowhere, Transform::from_xyz(3.0, 0.0, 0.0));
     world.steps(1);
-    assert!(world.errors(attachment).is_empty());
+    assert!(world.complaints(attachment).is_empty());
     let held = world.at(cloth, 0);
     world.steps(30);
     assert!(world.at(cloth, 0).distance(held) < 1e-6 && held.is_finite());
 }
 
-impl World {
-    fn move_transform(&mut self, entity: Entity, to: Vec3) {
-        let at = Transform::from_translation(to);
-        self.app.world_mut().entity_mut(entity).insert(at);
-    }
-}
-
 #[test]
 fn an_attachment_without_its_relationships_says_so() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
     let held = || ClothAttachment::corner(ClothCorner::TopLeft);
     let loose = world.spawn(held().to(hand));
     let aimless = world.spawn((held(), ClothAttachmentOf(cloth)));
     world.steps(2);
-    assert!(world.errors(loose)[0].contains("ClothAttachmentOf"));
-    assert!(world.errors(aimless)[0].contains("ClothAttachedTo"));
+    assert!(world.complaints(loose)[0].contains("ClothAttachmentOf"));
+    assert!(world.complaints(aimless)[0].contains("ClothAttachedTo"));
     assert!(world.exists(aimless));
     // It is never too late.
-    world
-        .app
-        .world_mut()
-        .entity_mut(loose)
-        .insert(ClothAttachmentOf(cloth));
+    world.insert(loose, ClothAttachmentOf(cloth));
     world.steps(1);
-    assert!(world.errors(loose).is_empty());
+    assert!(world.complaints(loose).is_empty());
     let at = world.at(cloth, 0);
     world.steps(30);
     assert!(world.at(cloth, 0).distance(at) < 1e-6);
@@ -168,12 +154,12 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
         ("backstop_radius", |c| c.backstop_radius = 0.0.into()),
     ];
     for (name, change) in wrong {
-        let mut world = World::new();
+        let mut world = vacuum();
         let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.2)));
         world.steps(2);
         world.edit(cloth, change);
         world.steps(60);
-        let errors = world.errors(cloth);
+        let errors = world.complaints(cloth);
         assert!(
             errors.len() == 1 && errors[0].contains(name),
             "{name}: {errors:?}"
@@ -183,16 +169,16 @@ fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
             *c = ClothMotionConstraints::at_most(0.3);
         });
         world.steps(60);
-        assert!(world.errors(cloth).is_empty());
+        assert!(world.complaints(cloth).is_empty());
         assert!((0.2..0.3 + 1e-5).contains(&world.at(cloth, 12).length()));
     }
 }
 
 #[test]
 fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
-    let rest = |world: &World, cloth| world.get::<Cloth>(cloth).rest_positions();
+    let rest = |world: &Sim, cloth| world.get::<Cloth>(cloth).rest_positions();
     for (name, broken) in [("positions[7]", Vec3::NAN), ("normals[7]", Vec3::INFINITY)] {
-        let mut world = World::new();
+        let mut world = vacuum();
         let targets = ClothMotionTargets::default();
         let cloth = world.spawn((square(5), ClothMotionConstraints::at_most(0.0), targets));
         let mut positions = rest(&world, cloth);
@@ -209,21 +195,21 @@ fn targets_that_are_wrong_are_named_and_stay_where_they_were() {
         });
         world.steps(3);
         assert!(
-            world.errors(cloth)[0].contains(name),
+            world.complaints(cloth)[0].contains(name),
             "{:?}",
-            world.errors(cloth)
+            world.complaints(cloth)
         );
         assert_eq!(world.positions(cloth), rest(&world, cloth));
         world.edit(cloth, |targets: &mut ClothMotionTargets| {
             targets.set_positions([Vec3::ZERO; 4]);
         });
         world.steps(1);
-        assert!(world.errors(cloth)[0].contains("4 entries"));
+        assert!(world.complaints(cloth)[0].contains("4 entries"));
         world.edit(cloth, |targets: &mut ClothMotionTargets| {
             targets.set_positions([Vec3::ONE; 25]);
         });
         world.steps(1);
-        assert!(world.errors(cloth).is_empty());
+        assert!(world.complaints(cloth).is_empty());
         assert_eq!(world.at(cloth, 7), Vec3::ONE);
     }
 }
@@ -248,19 +234,17 @@ proptest! {
         numbers in prop::array::uniform8(any_number()), place in prop::array::uniform3(any_number()),
         particle in 0u32..30, points in 0usize..4,
     ) {
-        let mut world = World::new();
+        let mut world = vacuum();
         let hand = world.spawn(Transform::default());
         let cloth = world.spawn((square(5), ClothMotionTargets::default()));
         let [compliance, force, most, distance, radius, x, y, z] = numbers;
-        let mut held = ClothAttachment::particles([particle, 3])
-            .with_compliance(compliance)
-            .with_break_force(force);
+        let mut held = ClothAttachment::particles([particle, 3]).with_compliance(compliance).with_break_force(force);
         if points > 0 {
             held = held.with_points(vec![Vec3::new(x, y, z); points]);
         }
         world.attach(cloth, hand, held);
         let limits = ClothMotionConstraints::at_most(most).with_backstop(distance, radius);
-        world.app.world_mut().entity_mut(cloth).insert(limits);
+        world.insert(cloth, limits);
         for at in [Vec3::ZERO, Vec3::from(place), Vec3::ONE] {
             world.move_to(hand, Transform::from_translation(at));
             world.edit(cloth, |targets: &mut ClothMotionTargets| {

@@ -1,17 +1,12 @@
 //! The same bits with any number of threads, any instruction set, and with a game's systems between the stages.
 
-use std::{env, process::Command};
-
 use bevy_ecs::{prelude::*, schedule::Schedules};
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Path, Sim, child};
 
-use crate::world::{Path, World, rigid};
-
-const THREADS: &str = "HOLDING_TEST_THREADS";
-
-const MARK: &str = "bits: ";
+use crate::world::{rigid, vacuum};
 
 fn dance(t: f32) -> Transform {
     Transform::from_xyz((5.0 * t).sin(), 0.0, (3.0 * t).sin())
@@ -19,14 +14,14 @@ fn dance(t: f32) -> Transform {
 }
 
 /// Everything at once: springs, rigid holds, targets that move with the frame, a backstop.
-fn everything(world: &mut World, size: UVec2) -> Entity {
-    let hand = world.spawn((dance(0.0), Path(Box::new(dance))));
+fn everything(world: &mut Sim, size: UVec2) -> Entity {
+    let hand = world.spawn((dance(0.0), Path::new(dance)));
     let limits = (0..size.element_product()).map(|i| if i % 97 == 3 { 0.0 } else { 0.3 });
     let cloth = world.spawn((
         Cloth::grid(Vec2::ONE, size),
         rigid(),
         dance(0.0),
-        Path(Box::new(|t| dance(0.5 * t))),
+        Path::new(|t| dance(0.5 * t)),
         ClothMotionConstraints::at_most(limits.collect::<Vec<_>>()).with_backstop(0.05, 0.7),
         ClothPinForces::default(),
     ));
@@ -38,10 +33,10 @@ fn everything(world: &mut World, size: UVec2) -> Entity {
     cloth
 }
 
-fn hash(world: &mut World, size: UVec2, steps: u32) -> u64 {
+fn hash(world: &mut Sim, size: UVec2, steps: u32) -> u64 {
     let cloth = everything(world, size);
     world.steps(steps);
-    assert!(world.errors(cloth).is_empty());
+    assert!(world.complaints(cloth).is_empty());
     let force = world.get::<ClothPinForces>(cloth).force();
     world.hash(cloth) ^ u64::from(force.length().to_bits())
 }
@@ -53,7 +48,7 @@ struct Calls(u32);
 fn systems_of_a_game_between_the_stages_change_nothing() {
     let size = UVec2::new(17, 21);
     let bits = |with_system: bool| {
-        let mut world = World::new();
+        let mut world = vacuum();
         world.app.init_resource::<Calls>();
         if with_system {
             world
@@ -61,7 +56,7 @@ fn systems_of_a_game_between_the_stages_change_nothing() {
                 .add_systems(ClothSubstep, |mut calls: ResMut<Calls>| calls.0 += 1);
         }
         let hash = hash(&mut world, size, 60);
-        assert_eq!(world.app.world().resource::<Calls>().0 > 0, with_system);
+        assert_eq!(world.resource::<Calls>().0 > 0, with_system);
         hash
     };
     assert_eq!(bits(true), bits(false));
@@ -71,10 +66,10 @@ fn systems_of_a_game_between_the_stages_change_nothing() {
 #[test]
 fn the_order_of_systems_that_ask_for_none_does_not_matter() {
     let size = UVec2::new(17, 21);
-    let bits = hash(&mut World::new(), size, 60);
+    let bits = hash(&mut vacuum(), size, 60);
     for seed in 0..10 {
-        let mut world = World::new();
-        let mut schedules = world.app.world_mut().resource_mut::<Schedules>();
+        let mut world = vacuum();
+        let mut schedules = world.resource_mut::<Schedules>();
         for (_, schedule) in schedules.iter_mut() {
             let mut settings = schedule.get_build_settings();
             settings.shuffle_seed = Some(seed);
@@ -87,8 +82,8 @@ fn the_order_of_systems_that_ask_for_none_does_not_matter() {
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
     let bits = |instruction_set| {
-        let mut world = World::new();
-        world.settings(|s| s.instruction_set = instruction_set);
+        let mut world = vacuum();
+        world.settings().instruction_set = instruction_set;
         hash(&mut world, UVec2::new(19, 13), 60)
     };
     let scalar = bits(ClothInstructionSet::Scalar);
@@ -105,35 +100,26 @@ fn every_instruction_set_gives_the_same_bits() {
 /// Not a test: in a process of its own, as a process has one set of threads, this simulates and prints the bits.
 #[test]
 fn as_a_child() {
-    let Ok(threads) = env::var(THREADS) else {
+    let Some(threads) = child::threads() else {
         return;
     };
-    let mut world = World::with_threads(threads.parse().unwrap_or(1));
+    let mut world = Sim::with_threads(Some(threads)).started();
+    world.app.insert_resource(ClothWind::vacuum());
     // Large enough for several threads at one.
     let large = hash(&mut world, UVec2::new(131, 150), 30);
-    println!("{MARK}{large:016x}");
+    child::tell(large);
     let cloths: Vec<Entity> = (0..40)
         .map(|_| everything(&mut world, UVec2::new(21, 23)))
         .collect();
     world.steps(30);
     for cloth in cloths {
-        println!("{MARK}{:016x}", world.hash(cloth));
+        child::tell(world.hash(cloth));
     }
 }
 
 #[test]
 fn every_number_of_threads_gives_the_same_bits() {
-    let bits = |threads: u32| -> Vec<String> {
-        let output = Command::new(env::current_exe().unwrap())
-            .args(["--exact", "bits::as_a_child", "--nocapture"])
-            .env(THREADS, threads.to_string())
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{output:?}");
-        let text = String::from_utf8(output.stdout).unwrap();
-        let lines = text.lines().filter_map(|line| line.split_once(MARK));
-        lines.map(|(_, bits)| bits.to_owned()).collect()
-    };
+    let bits = |threads| child::bits("bits::as_a_child", threads);
     let one = bits(1);
     assert_eq!(one.len(), 41);
     assert!(one[1..].iter().all(|bits| *bits == one[1]));
@@ -145,7 +131,7 @@ fn every_number_of_threads_gives_the_same_bits() {
 #[test]
 fn order_of_spawning_other_things_changes_nothing() {
     let bits = |others: u32| {
-        let mut world = World::new();
+        let mut world = vacuum();
         for k in 0..others {
             world.spawn(Transform::from_translation(Vec3::splat(k as f32)));
         }

@@ -3,14 +3,15 @@
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{G, Path};
 
-use crate::world::{G, Path, World, square};
+use crate::world::{square, vacuum};
 
 /// Hangs a sheet by its upper edge, slowly gets heavier, and tells at which weight it fell.
 fn weight_at_break(side: u32, substeps: u32, break_force: f32, edge: bool) -> f32 {
-    let mut world = World::new();
+    let mut world = vacuum();
     world.record::<ClothAttachmentBroken>();
-    world.settings(|s| s.substeps = Some(substeps));
+    world.settings().substeps = Some(substeps);
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(side));
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 5.0);
@@ -19,13 +20,13 @@ fn weight_at_break(side: u32, substeps: u32, break_force: f32, edge: bool) -> f3
     } else {
         ClothAttachment::corner(ClothCorner::TopLeft)
     };
-    world.settings(|s| s.gravity = Vec3::NEG_Y);
+    world.settings().gravity = Vec3::NEG_Y;
     let attachment = world.attach(cloth, hand, held.with_break_force(break_force));
     world.steps(600);
     let mass = world.mass(cloth);
     for k in 0..2000 {
         let gravity = 1.0 + 0.01 * k as f32;
-        world.settings(|s| s.gravity = Vec3::NEG_Y * gravity);
+        world.settings().gravity = Vec3::NEG_Y * gravity;
         world.steps(1);
         if let Some(broken) = world.recorded::<ClothAttachmentBroken>().first() {
             assert_eq!(broken.entity, cloth);
@@ -55,7 +56,7 @@ fn it_breaks_at_its_break_force_whatever_substeps_and_resolution() {
 
 #[test]
 fn below_its_break_force_it_is_as_good_as_rigid() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(17));
     let held = ClothAttachment::edge(ClothEdge::Top).with_break_force(20.0);
@@ -78,8 +79,8 @@ fn a_jerk_breaks_what_a_steady_pull_does_not() {
             let t = (t - 0.2).max(0.0);
             Transform::from_xyz(0.0, 0.0, 0.5 * acceleration * t * t)
         };
-        let mut world = World::new().without_gravity();
-        let hand = world.spawn((pull(0.0), Path(Box::new(pull))));
+        let mut world = vacuum().without_gravity();
+        let hand = world.spawn((pull(0.0), Path::new(pull)));
         let cloth = world.spawn(square(9));
         world.steps(1);
         let held = ClothAttachment::within(Vec3::ZERO, 2.0);
@@ -95,7 +96,7 @@ fn a_jerk_breaks_what_a_steady_pull_does_not() {
 
 #[test]
 fn what_is_left_hangs_on() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(12));
     let weak = ClothAttachment::corner(ClothCorner::TopRight).with_break_force(0.05);

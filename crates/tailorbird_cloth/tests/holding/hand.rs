@@ -3,13 +3,13 @@
 use bevy_math::{UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
 
-use crate::world::World;
+use crate::world::vacuum;
 
 /// The middle of a sheet of 2 m × 2 m that hangs by its upper corners, a little bulged by the wind, is lifted by 0.3 m in a second.
 #[test]
 fn a_hand_lifts_a_sheet_of_any_resolution() {
     for n in [9u32, 33, 65, 97, 128] {
-        let mut world = World::new();
+        let mut world = vacuum();
         world
             .app
             .insert_resource(ClothWind::steady(Vec3::new(0.0, 0.05, 0.8)));

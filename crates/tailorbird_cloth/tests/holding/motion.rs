@@ -4,16 +4,17 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{DT, Path, Sim};
 
-use crate::world::{DT, Path, World, rigid, square};
+use crate::world::{rigid, square, vacuum};
 
-fn rest(cloth: Entity, world: &World) -> Vec<Vec3> {
+fn rest(cloth: Entity, world: &Sim) -> Vec<Vec3> {
     world.get::<Cloth>(cloth).rest_positions()
 }
 
 #[test]
 fn no_particle_gets_further_than_it_may() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let weights = (0..81).map(|i| (i / 9) as f32 / 8.0);
     let limits = ClothPerParticle::weighted(weights.clone(), 0.3);
     let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(limits)));
@@ -32,7 +33,7 @@ fn no_particle_gets_further_than_it_may() {
 #[test]
 fn held_rows_are_as_good_as_pins() {
     let simulate = |held: bool| {
-        let mut world = World::new();
+        let mut world = vacuum();
         let cloth = world.spawn((
             square(12),
             Transform::from_rotation(Quat::from_rotation_x(-1.0)),
@@ -41,11 +42,7 @@ fn held_rows_are_as_good_as_pins() {
             let limits = (0..144)
                 .map(|i| if i < 12 { 0.0 } else { f32::INFINITY })
                 .collect::<Vec<_>>();
-            world
-                .app
-                .world_mut()
-                .entity_mut(cloth)
-                .insert(ClothMotionConstraints::at_most(limits));
+            world.insert(cloth, ClothMotionConstraints::at_most(limits));
         } else {
             world.edit(cloth, |pins: &mut ClothPins| {
                 *pins = ClothPins::edges([ClothEdge::Top]);
@@ -66,7 +63,7 @@ fn held_rows_are_as_good_as_pins() {
 
 #[test]
 fn a_backstop_holds_a_sheet_that_falls_on_it_and_lets_it_rest() {
-    let mut world = World::new();
+    let mut world = vacuum();
     // Horizontal, normals up.
     let lying = Transform::from_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
     let constraints = ClothMotionConstraints::default().with_backstop(0.1, 50.0);
@@ -112,7 +109,7 @@ fn animate(mut clock: ResMut<Clock>, mut cloths: Query<(&Cloth, &mut ClothMotion
 #[test]
 fn targets_in_either_space_are_followed_without_lag() {
     for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
-        let mut world = World::new();
+        let mut world = vacuum();
         world.app.init_resource::<Clock>();
         world.app.add_systems(bevy_app::FixedUpdate, animate);
         let most = 0.05;
@@ -124,14 +121,14 @@ fn targets_in_either_space_are_followed_without_lag() {
         let cloth = world.spawn((
             square(9),
             frame(0.0),
-            Path(Box::new(frame)),
+            Path::new(frame),
             ClothMotionConstraints::at_most(limits).with_backstop(0.02, 1.0),
             ClothMotionTargets::in_space(space),
         ));
         let rest = rest(cloth, &world);
         for _ in 0..90 {
             world.steps(1);
-            let clock = world.app.world().resource::<Clock>().0;
+            let clock = world.resource::<Clock>().0;
             let at = swing(clock);
             for (i, rest) in rest.iter().enumerate() {
                 let p = match space {
@@ -150,7 +147,7 @@ fn targets_in_either_space_are_followed_without_lag() {
 
 #[test]
 fn a_sphere_counts_before_the_maximum_distance() {
-    let mut world = World::new();
+    let mut world = vacuum();
     world.spawn((
         ClothCollider::sphere(0.3),
         Transform::from_xyz(0.0, 0.0, -0.2),
@@ -165,7 +162,7 @@ fn a_sphere_counts_before_the_maximum_distance() {
 
 #[test]
 fn constraints_that_are_removed_let_go() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let cloth = world.spawn((square(9), ClothMotionConstraints::at_most(0.0)));
     world.steps(10);
     assert_eq!(world.at(cloth, 40), Vec3::ZERO);
@@ -198,7 +195,7 @@ fn a_mesh_is_constrained_by_its_own_numbers() {
     let indices: Vec<u32> = (0..4)
         .flat_map(|r| (0..5).flat_map(move |c| cell(c, r)))
         .collect();
-    let mut world = World::new();
+    let mut world = vacuum();
     let limits: Vec<f32> = (0..30)
         .map(|i| if i % 7 == 0 { 0.0 } else { 0.01 * i as f32 })
         .collect();

@@ -6,7 +6,7 @@ use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::prelude::Transform;
 use tailorbird_cloth::prelude::*;
 
-use super::world::*;
+use crate::world::{square, vacuum};
 
 /// Particles around the skirt, and rows that are held.
 const AROUND: u32 = 112;
@@ -42,7 +42,7 @@ fn skirt() -> Cloth {
 /// The cone stands by its rings until they fold; as chains that are cut somewhere they were 2.6 times as long there.
 #[test]
 fn a_skirt_has_no_seam_and_asks_for_nothing() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let skirt = world.spawn((
         skirt(),
         ClothMaterial::cotton(),
@@ -84,7 +84,7 @@ fn collar(columns: u32, turn: Quat) -> ClothPins {
 fn a_cape_whose_collar_is_narrower_falls_as_it_would_without() {
     let lying = Quat::from_rotation_x(1.2);
     let lying_sideways = Quat::from_rotation_z(0.5 * PI);
-    let mut world = World::new();
+    let mut world = vacuum();
     for (radius, length, place) in [
         (0.125, 0.22, Transform::from_xyz(0.0, -0.06, 0.0)),
         (
@@ -123,7 +123,7 @@ fn a_cape_whose_collar_is_narrower_falls_as_it_would_without() {
 /// Clips that are put a fifth farther apart: what waits for a change hears of it once, though the part is another one in each step.
 #[test]
 fn a_demand_is_told_when_it_begins() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let sheet = world.spawn((
         square(9),
         ClothPins::edges([ClothEdge::Left, ClothEdge::Right]),

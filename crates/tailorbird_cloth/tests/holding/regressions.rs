@@ -4,8 +4,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{DT, Path, Sim};
 
-use crate::world::{DT, Path, World, square};
+use crate::world::{square, vacuum};
 
 /// The velocities of all particles after each substep [m/s].
 #[derive(Resource, Default)]
@@ -20,7 +21,7 @@ fn note(mut substeps: ResMut<Substeps>, cloths: Query<(&ClothParticles, &ClothFr
     }
 }
 
-fn noting(mut world: World) -> World {
+fn noting(mut world: Sim) -> Sim {
     world.app.init_resource::<Substeps>();
     world
         .app
@@ -37,16 +38,16 @@ fn steady(t: f32) -> Transform {
 /// In each substep of every step the same speed, not all of it in the first one.
 #[test]
 fn no_velocity_spike_in_the_first_substep_of_an_attachment() {
-    let mut world = noting(World::new().without_gravity());
-    let hand = world.spawn((steady(0.0), Path(Box::new(steady))));
+    let mut world = noting(vacuum().without_gravity());
+    let hand = world.spawn((steady(0.0), Path::new(steady)));
     let cloth = world.spawn(square(9));
     world.attach(cloth, hand, ClothAttachment::edge(ClothEdge::Top));
     // The rest is taken along; undamped it swings on for a while.
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 4.0);
     world.steps(200);
-    world.app.world_mut().resource_mut::<Substeps>().0.clear();
+    world.resource_mut::<Substeps>().0.clear();
     world.steps(10);
-    let substeps = &world.app.world().resource::<Substeps>().0;
+    let substeps = &world.resource::<Substeps>().0;
     assert!(substeps.len() >= 60);
     for (k, velocities) in substeps.iter().enumerate() {
         for (i, v) in velocities.iter().enumerate() {
@@ -66,7 +67,7 @@ fn no_velocity_spike_in_the_first_substep_of_a_backstop_or_a_target() {
     let held: ClothMotionConstraints = ClothMotionConstraints::at_most(0.0);
     let pushed = ClothMotionConstraints::default().with_backstop(0.01, 100.0);
     for constraints in [pushed, held, ClothMotionConstraints::at_most(0.02)] {
-        let mut world = noting(World::new().without_gravity());
+        let mut world = noting(vacuum().without_gravity());
         let cloth = world.spawn((square(9), constraints, ClothMotionTargets::default()));
         let rest = world.get::<Cloth>(cloth).rest_positions();
         for step in 1..=40 {
@@ -76,7 +77,7 @@ fn no_velocity_spike_in_the_first_substep_of_a_backstop_or_a_target() {
             });
             world.steps(1);
         }
-        let substeps = &world.app.world().resource::<Substeps>().0;
+        let substeps = &world.resource::<Substeps>().0;
         assert!(substeps.len() >= 240);
         let late = &substeps[substeps.len() / 4..];
         for (k, v) in late
@@ -105,7 +106,7 @@ fn no_velocity_grows_on_a_resting_contact() {
         ClothMotionConstraints::at_most(0.05),
         ClothMotionConstraints::at_most(0.05).with_backstop(0.02, 0.5),
     ] {
-        let mut world = World::new();
+        let mut world = vacuum();
         let cloth = world.spawn((
             square(12),
             lying,
@@ -124,7 +125,7 @@ fn no_velocity_grows_on_a_resting_contact() {
 
 #[test]
 fn the_last_motion_is_not_replayed_when_no_new_input_comes() {
-    let mut world = noting(World::new().without_gravity());
+    let mut world = noting(vacuum().without_gravity());
     let hand = world.spawn(Transform::default());
     let attached = world.spawn(square(5));
     world.attach(attached, hand, ClothAttachment::within(Vec3::ZERO, 2.0));
@@ -158,12 +159,12 @@ fn the_last_motion_is_not_replayed_when_no_new_input_comes() {
 
 #[test]
 fn motion_while_time_stands_still_is_no_blow() {
-    let mut world = World::new().without_gravity();
+    let mut world = vacuum().without_gravity();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(5));
     world.attach(cloth, hand, ClothAttachment::within(Vec3::ZERO, 2.0));
     world.steps(5);
-    world.settings(|s| s.paused = true);
+    world.settings().paused = true;
     // The cloth's entity moves rigidly with its particles while it is paused.
     for _ in 0..10 {
         for entity in [hand, cloth] {
@@ -171,7 +172,7 @@ fn motion_while_time_stands_still_is_no_blow() {
         }
         world.steps(1);
     }
-    world.settings(|s| s.paused = false);
+    world.settings().paused = false;
     world.steps(1);
     assert!(
         world.at(cloth, 12).distance(Vec3::X * 10.0) < 1e-5,

@@ -4,17 +4,18 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::Sim;
 
-use crate::world::{World, square};
+use crate::world::{square, vacuum};
 
 /// A sheet that hangs by a hand and sleeps, and the hand.
-fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (World, Entity, Entity) {
-    let mut world = World::new();
+fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (Sim, Entity, Entity) {
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(8), ClothMotionTargets::default()));
     if let Some(most) = constraints {
         let constraints = ClothMotionConstraints::at_most(most);
-        world.app.world_mut().entity_mut(cloth).insert(constraints);
+        world.insert(cloth, constraints);
     }
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
     world.edit::<ClothSleep>(cloth, |sleep| *sleep = ClothSleep::default());
@@ -28,7 +29,7 @@ fn sleeping(attachment: ClothAttachment, constraints: Option<f32>) -> (World, En
     panic!("still awake after 30 s");
 }
 
-fn is_asleep(world: &World, cloth: Entity) -> bool {
+fn is_asleep(world: &Sim, cloth: Entity) -> bool {
     world.get::<ClothSleepState>(cloth).is_asleep()
 }
 
@@ -68,7 +69,7 @@ fn it_follows_a_target_that_creeps() {
             let (mut world, cloth, hand) = sleeping(held.clone(), None);
             world.edit::<ClothSleep>(cloth, |sleep| sleep.enabled = enabled);
             let places =
-                |world: &World| -> Vec<Vec3> { (0..64).map(|i| world.at(cloth, i)).collect() };
+                |world: &Sim| -> Vec<Vec3> { (0..64).map(|i| world.at(cloth, i)).collect() };
             let before = places(&world);
             // 1 mm/s up, for 5 s.
             for _ in 0..300 {
@@ -104,7 +105,7 @@ fn targets_that_are_set_to_where_they_are_wake_nobody_and_others_do() {
     let held = ClothAttachment::edge(ClothEdge::Top);
     let (mut world, cloth, _) = sleeping(held, Some(0.1));
     let rest = world.get::<Cloth>(cloth).rest_positions();
-    let aim = |world: &mut World, by: f32| {
+    let aim = |world: &mut Sim, by: f32| {
         world.edit::<ClothMotionTargets>(cloth, |targets| {
             targets.set_positions(rest.iter().map(|p| *p + Vec3::Z * by));
         });

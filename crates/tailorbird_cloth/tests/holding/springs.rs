@@ -4,12 +4,13 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{G, Sim};
 
-use crate::world::{G, World, rigid, square};
+use crate::world::{rigid, square, vacuum};
 
 /// A sheet that hangs still by what holds it.
-fn hanging(attachment: ClothAttachment, side: u32) -> (World, Entity, Entity) {
-    let mut world = World::new();
+fn hanging(attachment: ClothAttachment, side: u32) -> (Sim, Entity, Entity) {
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(side), ClothPinForces::default()));
     world.edit::<ClothMaterial>(cloth, |material| material.damping = 3.0);
@@ -19,7 +20,7 @@ fn hanging(attachment: ClothAttachment, side: u32) -> (World, Entity, Entity) {
 }
 
 /// Distance of the sheet's upper corner below the point that holds it, and its weight.
-fn sag(world: &World, cloth: Entity) -> (f32, f32) {
+fn sag(world: &Sim, cloth: Entity) -> (f32, f32) {
     (0.5 - world.at(cloth, 0).y, world.mass(cloth) * G)
 }
 
@@ -61,8 +62,8 @@ fn springs_add_no_stretch() {
 #[test]
 fn a_spring_swings_at_its_natural_frequency() {
     // A sheet that is held as a whole is a mass at a spring: T = 2π √(m α).
-    let mut world = World::new().without_gravity();
-    world.settings(|s| s.substeps = Some(32));
+    let mut world = vacuum().without_gravity();
+    world.settings().substeps = Some(32);
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(6));
     let compliance = 0.2;
@@ -91,7 +92,7 @@ fn a_spring_swings_at_its_natural_frequency() {
 
 #[test]
 fn a_soft_hold_follows_softly() {
-    let mut world = World::new().without_gravity();
+    let mut world = vacuum().without_gravity();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn(square(6));
     let all = ClothAttachment::within(Vec3::ZERO, 2.0).with_compliance(0.05);
@@ -117,7 +118,7 @@ fn pins_carry_the_weight_of_the_sheet() {
     for (pins, solver) in holds.into_iter().flat_map(|pins| {
         [ClothSolver::Chains, ClothSolver::GaussSeidel].map(|solver| (pins.clone(), solver))
     }) {
-        let mut world = World::new();
+        let mut world = vacuum();
         let (mut material, sleep) = rigid();
         material.damping = 3.0;
         let cloth = world.spawn((
@@ -143,7 +144,7 @@ fn pins_carry_the_weight_of_the_sheet() {
 
 #[test]
 fn springs_and_pins_share_the_weight() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((
         square(20),

@@ -4,17 +4,18 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Path, Sim, furthest};
 
-use crate::world::{Path, World, square};
+use crate::world::{square, vacuum};
 
 /// Runs at this speed [m/s].
 const RUN: f32 = 5.0;
 
 /// A runner who turns slowly.
 fn runner() -> Path {
-    Path(Box::new(|t| {
+    Path::new(|t| {
         Transform::from_xyz(RUN * t, 0.0, 0.0).with_rotation(Quat::from_rotation_y(0.3 * t))
-    }))
+    })
 }
 
 /// A cape of a runner: pinned to its own entity, attached to another one, or both: to another one below which it is.
@@ -27,8 +28,8 @@ enum Held {
 
 const ALL: [Held; 3] = [Held::Pinned, Held::Attached, Held::AttachedBelow];
 
-fn cape(held: Held, unseen: bool) -> (World, Entity) {
-    let mut world = World::new();
+fn cape(held: Held, unseen: bool) -> (Sim, Entity) {
+    let mut world = vacuum();
     let body = world.spawn((Transform::default(), runner()));
     let cloth = world.spawn(square(12));
     match held {
@@ -49,12 +50,12 @@ fn cape(held: Held, unseen: bool) -> (World, Entity) {
     (world, cloth)
 }
 
-fn see(world: &mut World, cloth: Entity, seen: bool) {
+fn see(world: &mut Sim, cloth: Entity, seen: bool) {
     world.edit::<ClothSeen>(cloth, |is| is.0 = seen);
 }
 
 /// The shape as the cloth's holder sees it.
-fn shape(world: &World, cloth: Entity) -> Vec<Vec3> {
+fn shape(world: &Sim, cloth: Entity) -> Vec<Vec3> {
     let all = world.positions(cloth);
     let (x, y) = ((all[11] - all[0]).normalize(), Vec3::Y);
     let z = x.cross(y);
@@ -62,13 +63,6 @@ fn shape(world: &World, cloth: Entity) -> Vec<Vec3> {
     all.iter()
         .map(|p| Vec3::new(from(p).dot(x), from(p).dot(y), from(p).dot(z)))
         .collect()
-}
-
-fn furthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| a.distance(*b))
-        .fold(0.0, f32::max)
 }
 
 #[test]
@@ -143,7 +137,7 @@ fn it_stays_awake_without_the_setting_and_with_targets_and_wakes_by_nothing_else
     world.edit::<ClothForces>(cloth, |forces| forces.add_force(100, Vec3::X));
     let shape_before = shape(&world, cloth);
     for paused in [false, true, false] {
-        world.settings(|s| s.paused = paused);
+        world.settings().paused = paused;
         world.steps(5);
         assert!(world.get::<ClothSleepState>(cloth).is_unseen());
         assert!(furthest(&shape_before, &shape(&world, cloth)) < 1e-3);
@@ -163,13 +157,13 @@ fn it_comes_back_during_a_pause() {
         see(&mut world, cloth, false);
         world.steps(60);
         let before = shape(&world, cloth);
-        world.settings(|s| s.paused = true);
+        world.settings().paused = true;
         // The runner runs on.
         world.steps(3);
         see(&mut world, cloth, true);
         world.steps(3);
         assert!(furthest(&before, &shape(&world, cloth)) < 1e-3, "{held:?}");
-        world.settings(|s| s.paused = false);
+        world.settings().paused = false;
         let mut stretch = 0.0f32;
         for step in 0..30 {
             world.steps(1);
@@ -189,7 +183,7 @@ fn it_comes_back_during_a_pause() {
 /// Its entity walks away from it, its holder does not.
 #[test]
 fn it_stays_with_a_holder_that_stands_while_its_entity_moves() {
-    let mut world = World::new();
+    let mut world = vacuum();
     let walker = world.spawn((Transform::default(), runner()));
     let hand = world.spawn(Transform::default());
     let cloth = world.spawn((square(12), ChildOf(walker)));

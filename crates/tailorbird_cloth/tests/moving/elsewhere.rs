@@ -5,15 +5,16 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Path, Sim, When};
 
-use crate::game::{Game, HELD, Held, Mover, When, cape, spawn_cape};
+use crate::game::{HELD, Held, cape, film, game, game_stepping_in, spawn_cape};
 
 const RATES: [f64; 4] = [30.0, 60.0, 64.0, 144.0];
 
 #[derive(Resource, Default)]
 struct Told(Vec<ClothMotionTeleported>);
 
-fn listen(game: &mut Game) {
+fn listen(game: &mut Sim) {
     game.app.init_resource::<Told>().add_systems(
         Update,
         |mut messages: MessageReader<ClothMotionTeleported>, mut told: ResMut<Told>| {
@@ -22,8 +23,8 @@ fn listen(game: &mut Game) {
     );
 }
 
-fn told(game: &Game) -> &[ClothMotionTeleported] {
-    &game.app.world().resource::<Told>().0
+fn told(game: &Sim) -> &[ClothMotionTeleported] {
+    &game.resource::<Told>().0
 }
 
 /// A runner who hops 2 m ahead and then 2 m aside.
@@ -43,17 +44,14 @@ fn a_hop_of_two_metres_stretches_nothing_and_is_told() {
         for held in HELD {
             for when in [When::FixedUpdate, When::Update, When::PostUpdate] {
                 let run = |path: fn(f32) -> Transform| {
-                    let mut game = Game::new(fps, 60.0);
+                    let mut game = game(fps, 60.0);
                     listen(&mut game);
                     let (_, body) = spawn_cape(&mut game, held);
-                    game.app
-                        .world_mut()
-                        .entity_mut(body)
-                        .insert(Mover(when, path));
+                    game.insert(body, Path::when(when, path));
                     game.seconds(1.9);
-                    game.film();
+                    film(&mut game);
                     game.seconds(1.5);
-                    let film = game.film();
+                    let film = film(&mut game);
                     game.frames(1);
                     let told = told(&game).to_vec();
                     (film, told, body)
@@ -89,12 +87,12 @@ fn a_hop_that_turns_round_turns_the_cape() {
         }
     }
     for held in HELD {
-        let mut game = Game::new(60.0, 60.0);
+        let mut game = game(60.0, 60.0);
         let (cloth, body) = spawn_cape(&mut game, held);
-        let mover = Mover(When::PostUpdate, path);
-        game.app.world_mut().entity_mut(body).insert(mover);
+        let mover = Path::when(When::PostUpdate, path);
+        game.insert(body, mover);
         game.seconds(3.0);
-        let film = game.film();
+        let film = film(&mut game);
         assert!(film.stretch() < 0.05, "{held:?}: {}", film.stretch());
         let speed = game.fastest(cloth);
         assert!(speed < 0.5, "{held:?}: {speed}");
@@ -106,7 +104,7 @@ fn a_hop_that_turns_round_turns_the_cape() {
 fn what_several_hold_goes_along_with_all_of_them() {
     for fps in RATES {
         for (below, child) in [(true, false), (false, false), (true, true)] {
-            let mut game = Game::new(fps, 60.0);
+            let mut game = game(fps, 60.0);
             let cloth = game.spawn(cape());
             let body = game.spawn(Transform::default());
             let hands = [ClothCorner::TopLeft, ClothCorner::TopRight].map(|corner| {
@@ -123,7 +121,7 @@ fn what_several_hold_goes_along_with_all_of_them() {
             }
             // At once from a plane it snaps taut.
             game.seconds(6.0);
-            game.film();
+            film(&mut game);
             let before = game.at(cloth, 300);
             let hop = Vec3::new(2.0, 0.5, 0.0);
             if below {
@@ -134,7 +132,7 @@ fn what_several_hold_goes_along_with_all_of_them() {
                 }
             }
             game.frames(10);
-            let film = game.film();
+            let film = film(&mut game);
             let name = format!("{fps} {below} {child}");
             assert!(film.stretch() < 0.05, "{name}: {}", film.stretch());
             let moved = game.at(cloth, 300) - before;
@@ -148,7 +146,7 @@ fn what_several_hold_goes_along_with_all_of_them() {
 fn a_short_hop_of_a_holder_is_told() {
     for fps in RATES {
         for held in HELD {
-            let mut game = Game::new(fps, 60.0);
+            let mut game = game(fps, 60.0);
             listen(&mut game);
             let (cloth, body) = spawn_cape(&mut game, held);
             game.seconds(2.0);
@@ -178,7 +176,7 @@ fn nobody_feels_that_the_origin_is_shifted() {
     for fps in RATES {
         for held in HELD {
             let run = |shift: Vec3| {
-                let mut game = Game::new(fps, 60.0);
+                let mut game = game(fps, 60.0);
                 let (cloth, body) = spawn_cape(&mut game, held);
                 let ball = Transform::from_xyz(0.1, -0.7, -0.15);
                 game.spawn((ClothCollider::sphere(0.2), ball));
@@ -205,7 +203,7 @@ fn nobody_feels_that_the_origin_is_shifted() {
                 let particles: &ClothParticles = game.get(cloth);
                 let count = particles.len();
                 let places = (0..count).map(|i| game.at(cloth, i) - shift);
-                (places.collect::<Vec<_>>(), game.film().stretch())
+                (places.collect::<Vec<_>>(), film(&mut game).stretch())
             };
             let (still, stretch) = run(Vec3::ZERO);
             let (shifted, stretch_shifted) = run(Vec3::new(2.0, 0.0, -2.0));
@@ -225,7 +223,7 @@ fn nobody_feels_that_the_origin_is_shifted() {
 #[test]
 fn a_collider_that_hops_sweeps_nothing_along() {
     for fps in RATES {
-        let mut game = Game::new(fps, 60.0);
+        let mut game = game(fps, 60.0);
         let cloth = game.spawn((cape(), ClothPins::edges([ClothEdge::Top])));
         let ball = Transform::from_xyz(0.0, -0.6, -1.0);
         let ball = game.spawn((ClothCollider::sphere(0.2), ball));
@@ -243,19 +241,19 @@ fn a_collider_that_hops_sweeps_nothing_along() {
 #[test]
 fn a_holder_that_gets_another_parent_takes_the_cloth_along() {
     for fps in RATES {
-        let mut game = Game::new(fps, 60.0);
+        let mut game = game(fps, 60.0);
         let (cloth, body) = spawn_cape(&mut game, Held::Attached);
         let other = game.spawn(Transform::from_xyz(1.0, 0.3, 0.0));
         game.seconds(2.0);
-        game.film();
-        game.app.world_mut().entity_mut(body).insert(ChildOf(other));
+        film(&mut game);
+        game.insert(body, ChildOf(other));
         let mut speed = 0.0f32;
         for _ in 0..20 {
             game.frames(1);
             speed = speed.max(game.fastest(cloth));
         }
         assert!(speed < 0.5, "{fps}: {speed}");
-        assert!(game.film().stretch() < 0.05);
+        assert!(film(&mut game).stretch() < 0.05);
     }
 }
 
@@ -265,13 +263,13 @@ fn a_scaled_parent_does_not_make_hops_of_motion() {
     fn swing(t: f32) -> Transform {
         Transform::from_xyz(50.0 * (6.0 * t).sin(), 0.0, 0.0)
     }
-    let mut game = Game::new(60.0, 60.0);
+    let mut game = game(60.0, 60.0);
     listen(&mut game);
     let armature = game.spawn(Transform::from_scale(Vec3::splat(0.01)));
     let bone = game.spawn((
         Transform::default(),
         ChildOf(armature),
-        Mover(When::PostUpdate, swing),
+        Path::when(When::PostUpdate, swing),
     ));
     let cloth = game.spawn(cape());
     game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
@@ -281,11 +279,11 @@ fn a_scaled_parent_does_not_make_hops_of_motion() {
 
 #[test]
 fn the_threshold_is_a_setting_and_a_wrong_one_is_told() {
-    let mut game = Game::new(60.0, 60.0);
+    let mut game = game(60.0, 60.0);
     listen(&mut game);
     let (_, body) = spawn_cape(&mut game, Held::Attached);
     for (speed, hops) in [(f32::INFINITY, 0), (30.0, 1), (f32::NAN, 2), (5.0, 3)] {
-        let mut settings = game.app.world_mut().resource_mut::<ClothSettings>();
+        let mut settings = game.resource_mut::<ClothSettings>();
         settings.teleport_speed = speed;
         let wrong = settings.errors();
         assert_eq!(wrong.len(), usize::from(speed.is_nan()), "{wrong:?}");
@@ -300,16 +298,16 @@ fn the_threshold_is_a_setting_and_a_wrong_one_is_told() {
 fn no_start_is_too_sudden() {
     for held in HELD {
         for speed in [2.0, 4.0, 6.0, 8.0, 12.0, 20.0, 29.0f32] {
-            let mut game = Game::new(60.0, 60.0);
+            let mut game = game(60.0, 60.0);
             listen(&mut game);
             let (cloth, body) = spawn_cape(&mut game, held);
             game.seconds(2.0);
-            game.film();
+            film(&mut game);
             for _ in 0..60 {
                 game.shift(body, Vec3::X * speed / 60.0);
                 game.frames(1);
             }
-            let film = game.film();
+            let film = film(&mut game);
             let mean = film.stretch.iter().map(|s| s.mean).fold(0.0, f32::max);
             let largest = film.stretch();
             println!("{speed} {held:?}: mean {mean:.4}, largest {largest:.3}");
@@ -327,28 +325,25 @@ fn no_start_is_too_sudden() {
 /// Without a fixed loop there is a step in each frame, and nothing between.
 #[test]
 fn a_cloth_that_steps_in_each_frame_is_carried_as_well() {
-    let mut game = Game::stepping_in(PostUpdate, 60.0);
+    let mut game = game_stepping_in(PostUpdate, 60.0);
     listen(&mut game);
     let (cloth, body) = spawn_cape(&mut game, Held::Attached);
-    game.app
-        .world_mut()
-        .entity_mut(body)
-        .insert(Mover(When::Update, hopping));
+    game.insert(body, Path::when(When::Update, hopping));
     game.seconds(1.9);
-    game.film();
+    film(&mut game);
     game.seconds(1.5);
-    assert!(game.film().stretch() < 0.05);
+    assert!(film(&mut game).stretch() < 0.05);
     assert_eq!(told(&game).len(), 2);
     let place = game.get::<Transform>(body).translation;
     assert!(game.at(cloth, 0).distance(place - 0.4 * Vec3::X) < 1e-5);
     game.pause(true);
     game.frames(2);
-    game.app.world_mut().entity_mut(body).remove::<Mover>();
+    game.app.world_mut().entity_mut(body).remove::<Path>();
     game.shift(body, Vec3::X * 0.4);
     game.frames(2);
     game.pause(false);
     let speed = game.fastest(cloth);
     game.frames(20);
     assert!(game.fastest(cloth) < speed + 0.5);
-    assert!(game.film().stretch() < 0.05);
+    assert!(film(&mut game).stretch() < 0.05);
 }

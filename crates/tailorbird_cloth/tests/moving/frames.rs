@@ -7,8 +7,9 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use proptest::prelude::*;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Path, Sim, When};
 
-use crate::game::{Film, Game, HELD, Held, Mover, SIZE, TargetMover, When, cape, spawn_cape};
+use crate::game::{Film, HELD, Held, SIZE, TargetMover, cape, film, game, spawn_cape};
 
 const RATES: [f64; 4] = [30.0, 60.0, 64.0, 144.0];
 
@@ -24,16 +25,16 @@ fn swing(t: f32) -> Transform {
     .with_rotation(Quat::from_rotation_y(0.4 * ramp * (5.0 * t).sin()))
 }
 
-/// Film from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and twice the
-/// same motion, a step later, differs by 10 %.
-fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Game)) -> Film {
-    let mut game = Game::new(fps, hz);
+/// Film from the fourth second on, for eight seconds, in air that is still: in a vacuum folds are as sharp as chance has it, and
+/// twice the same motion, a step later, differs by 10 %.
+fn filmed(fps: f64, hz: f64, prepare: impl FnOnce(&mut Sim)) -> Film {
+    let mut game = game(fps, hz);
     game.app.insert_resource(ClothWind::default());
     prepare(&mut game);
     game.seconds(3.0);
-    game.film();
+    film(&mut game);
     game.seconds(8.0);
-    game.film()
+    film(&mut game)
 }
 
 /// Ratio of the jolts of all rows to those with motion in `FixedUpdate`, at worst.
@@ -45,10 +46,7 @@ fn worst(film: &Film, fixed: &Film, columns: usize) -> f32 {
 fn swinging(fps: f64, hz: f64, held: Held, when: When) -> Film {
     filmed(fps, hz, |game| {
         let (_, body) = spawn_cape(game, held);
-        game.app
-            .world_mut()
-            .entity_mut(body)
-            .insert(Mover(when, swing));
+        game.insert(body, Path::when(when, swing));
     })
 }
 
@@ -78,8 +76,8 @@ fn a_bone_that_is_animated_on_what_the_fixed_loop_moves() {
     let bones = |fps, when| {
         filmed(fps, 60.0, |game| {
             let cloth = game.spawn(cape());
-            let body = game.spawn((Transform::default(), Mover(When::FixedUpdate, run)));
-            let bone = game.spawn((Transform::default(), Mover(when, swing), ChildOf(body)));
+            let body = game.spawn((Transform::default(), Path::when(When::FixedUpdate, run)));
+            let bone = game.spawn((Transform::default(), Path::when(when, swing), ChildOf(body)));
             game.attach(cloth, bone, ClothAttachment::edge(ClothEdge::Top));
         })
     };
@@ -131,7 +129,11 @@ fn a_collider_that_is_moved_once_a_frame() {
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
-            game.spawn((ClothCollider::sphere(0.2), ball(0.0), Mover(when, ball)));
+            game.spawn((
+                ClothCollider::sphere(0.2),
+                ball(0.0),
+                Path::when(when, ball),
+            ));
         })
     };
     let fixed = pushed(60.0, When::FixedUpdate);
@@ -148,12 +150,9 @@ fn a_collider_that_is_moved_once_a_frame() {
 fn what_the_fixed_loop_moves_is_not_delayed() {
     for fps in RATES {
         for held in [Held::Pinned, Held::Child, Held::Attached] {
-            let mut game = Game::new(fps, 60.0);
+            let mut game = game(fps, 60.0);
             let (cloth, body) = spawn_cape(&mut game, held);
-            game.app
-                .world_mut()
-                .entity_mut(body)
-                .insert(Mover(When::FixedUpdate, swing));
+            game.insert(body, Path::when(When::FixedUpdate, swing));
             game.seconds(2.0);
             for _ in 0..40 {
                 game.frames(1);
@@ -198,10 +197,10 @@ fn a_pose_that_is_eased_after_the_fixed_loop_and_restored_before_it_gives_the_sa
     for fps in RATES {
         for held in HELD {
             let run = |eases: bool| {
-                let mut game = Game::new(fps, 60.0);
+                let mut game = game(fps, 60.0);
                 let (cloth, body) = spawn_cape(&mut game, held);
-                let mover = (Mover(When::FixedUpdate, swing), Eased::default());
-                game.app.world_mut().entity_mut(body).insert(mover);
+                let mover = (Path::when(When::FixedUpdate, swing), Eased::default());
+                game.insert(body, mover);
                 if eases {
                     game.app
                         .add_systems(FixedFirst, restore)
@@ -228,23 +227,23 @@ proptest! {
     fn frames_that_vary(lengths in proptest::collection::vec(0.004f64..0.035, 20), hz in prop_oneof![Just(60.0), Just(64.0)]) {
         let size = UVec2::new(4, 8);
         let run = |when: When, lengths: &[f64]| {
-            let mut game = Game::new(60.0, hz);
+            let mut game = game(60.0, hz);
             game.app.insert_resource(ClothWind::default());
             let cloth = game.spawn((
                 Cloth::grid(Vec2::new(0.3, 0.8), size),
                 ClothMaterial::cotton(),
                 ClothSleep::never(),
             ));
-            let body = game.spawn((Transform::default(), Mover(when, swing)));
+            let body = game.spawn((Transform::default(), Path::when(when, swing)));
             game.attach(cloth, body, ClothAttachment::edge(ClothEdge::Top));
             for (k, length) in lengths.iter().cycle().take(400).enumerate() {
                 if k == 200 {
-                    game.film();
+                    film(&mut game);
                 }
                 game.set_frame(std::time::Duration::from_secs_f64(*length));
                 game.frames(1);
             }
-            game.film()
+            film(&mut game)
         };
         let film = run(When::PostUpdate, &lengths);
         let fixed = run(When::FixedUpdate, &lengths);

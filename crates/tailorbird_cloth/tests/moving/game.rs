@@ -2,40 +2,17 @@
 
 use std::time::Duration;
 
-use bevy_app::{
-    App, FixedPostUpdate, FixedUpdate, PostUpdate, TaskPoolOptions, TaskPoolPlugin, Update,
-};
-use bevy_ecs::{component::Mutable, prelude::*, schedule::ScheduleLabel};
+use bevy_app::{FixedPostUpdate, FixedUpdate, PostUpdate, Update};
+use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
 use bevy_math::{UVec2, Vec2, Vec3};
-use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
+use bevy_time::Time;
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
-
-/// When something moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum When {
-    FixedUpdate,
-    Update,
-    PostUpdate,
-}
-
-/// Moves an entity by the clock of its schedule [s].
-#[derive(Component, Clone, Copy)]
-pub struct Mover(pub When, pub fn(f32) -> Transform);
+use tailorbird_test::{Sim, When};
 
 /// Moves the targets of a cloth from their places at rest.
 #[derive(Component, Clone, Copy)]
 pub struct TargetMover(pub When, pub fn(f32) -> Transform);
-
-fn go(when: When) -> impl Fn(Res<Time>, Query<(&Mover, &mut Transform)>) {
-    move |time, mut movers| {
-        for (mover, mut place) in &mut movers {
-            if mover.0 == when {
-                *place = mover.1(time.elapsed_secs());
-            }
-        }
-    }
-}
 
 fn aim(when: When) -> impl Fn(Res<Time>, Query<(&TargetMover, &Cloth, &mut ClothMotionTargets)>) {
     move |time, mut movers| {
@@ -56,7 +33,7 @@ pub struct Film {
     pub stretch: Vec<ClothStretch>,
 }
 
-fn film(
+fn look(
     mut film: ResMut<Film>,
     cloths: Query<(&ClothParticles, &ClothFrame, &ClothTopology), With<Cloth>>,
 ) {
@@ -68,113 +45,33 @@ fn film(
     film.stretch.push(particles.stretch(topology));
 }
 
-pub struct Game {
-    pub app: App,
-    frame: Duration,
+/// So many frames and steps a second.
+pub fn game(fps: f64, hz: f64) -> Sim {
+    filmed(Sim::vacuum(), FixedPostUpdate, fps, hz)
 }
 
-impl Game {
-    /// Of so many frames and steps a second.
-    pub fn new(fps: f64, hz: f64) -> Self {
-        Self::with(FixedPostUpdate, fps, hz)
-    }
+/// Cloths step once a frame.
+pub fn game_stepping_in(schedule: impl ScheduleLabel + Clone, fps: f64) -> Sim {
+    let mut game = Sim::stepping_in(schedule.clone());
+    game.app.insert_resource(ClothWind::vacuum());
+    filmed(game, schedule, fps, fps)
+}
 
-    /// Whose cloths step once a frame.
-    pub fn stepping_in(schedule: impl ScheduleLabel + Clone, fps: f64) -> Self {
-        Self::with(schedule, fps, fps)
-    }
+fn filmed(mut game: Sim, schedule: impl ScheduleLabel, fps: f64, hz: f64) -> Sim {
+    game.app
+        .init_resource::<Film>()
+        .add_systems(FixedUpdate, aim(When::FixedUpdate))
+        .add_systems(Update, aim(When::Update))
+        .add_systems(PostUpdate, aim(When::PostUpdate))
+        .add_systems(schedule, look.after(ClothSystems::Writeback));
+    game.set_hz(hz);
+    game.set_frame(Duration::from_secs_f64(1.0 / fps));
+    game.started()
+}
 
-    fn with(schedule: impl ScheduleLabel + Clone, fps: f64, hz: f64) -> Self {
-        let mut app = App::new();
-        let mut pools = TaskPoolOptions::default();
-        pools.compute.min_threads = 1;
-        pools.compute.max_threads = 1;
-        let pools = TaskPoolPlugin {
-            task_pool_options: pools,
-        };
-        app.add_plugins((pools, TimePlugin, ClothPlugin::new(schedule.clone())))
-            .insert_resource(ClothWind::vacuum())
-            .init_resource::<Film>()
-            .insert_resource(Time::<Fixed>::from_hz(hz))
-            .add_systems(FixedUpdate, (go(When::FixedUpdate), aim(When::FixedUpdate)))
-            .add_systems(Update, (go(When::Update), aim(When::Update)))
-            .add_systems(PostUpdate, (go(When::PostUpdate), aim(When::PostUpdate)))
-            .add_systems(schedule, film.after(ClothSystems::Writeback));
-        app.finish();
-        app.cleanup();
-        let frame = Duration::from_secs_f64(1.0 / fps);
-        let mut game = Self { app, frame };
-        game.set_frame(frame);
-        game.frames(1);
-        game
-    }
-
-    /// Sets the length of frames from now on.
-    pub fn set_frame(&mut self, frame: Duration) {
-        self.frame = frame;
-        self.app
-            .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
-    }
-
-    pub fn frames(&mut self, count: u32) {
-        for _ in 0..count {
-            self.app.update();
-        }
-    }
-
-    pub fn seconds(&mut self, seconds: f32) {
-        self.frames((seconds / self.frame.as_secs_f32()).round() as u32);
-    }
-
-    pub fn spawn(&mut self, bundle: impl Bundle) -> Entity {
-        self.app.world_mut().spawn(bundle).id()
-    }
-
-    pub fn get<C: Component>(&self, entity: Entity) -> &C {
-        self.app.world().get(entity).unwrap()
-    }
-
-    pub fn edit<C: Component<Mutability = Mutable>>(
-        &mut self,
-        entity: Entity,
-        change: impl FnOnce(&mut C),
-    ) {
-        change(&mut self.app.world_mut().get_mut(entity).unwrap());
-    }
-
-    /// Between two frames.
-    pub fn shift(&mut self, entity: Entity, way: Vec3) {
-        self.edit::<Transform>(entity, |place| place.translation += way);
-    }
-
-    pub fn pause(&mut self, paused: bool) {
-        let mut time = self.app.world_mut().resource_mut::<Time<Virtual>>();
-        if paused {
-            time.pause();
-        } else {
-            time.unpause();
-        }
-    }
-
-    pub fn film(&mut self) -> Film {
-        std::mem::take(&mut self.app.world_mut().resource_mut::<Film>())
-    }
-
-    /// The fastest particle [m/s].
-    pub fn fastest(&self, cloth: Entity) -> f32 {
-        let particles: &ClothParticles = self.get(cloth);
-        let speeds = (0..particles.len()).map(|i| particles.velocity(i).length());
-        speeds.fold(0.0, f32::max)
-    }
-
-    pub fn at(&self, cloth: Entity, particle: usize) -> Vec3 {
-        let particles: &ClothParticles = self.get(cloth);
-        particles.world_position(particle, self.get::<ClothFrame>(cloth))
-    }
-
-    pub fn attach(&mut self, cloth: Entity, to: Entity, clip: ClothAttachment) {
-        self.spawn((clip.to(to), ClothAttachmentOf(cloth)));
-    }
+/// What was seen since this was called last.
+pub fn film(game: &mut Sim) -> Film {
+    std::mem::take(&mut game.resource_mut::<Film>())
 }
 
 impl Film {
@@ -240,13 +137,13 @@ pub enum Held {
 pub const HELD: [Held; 4] = [Held::Pinned, Held::Child, Held::Attached, Held::Sprung];
 
 /// A cape, and the entity that moves.
-pub fn spawn_cape(game: &mut Game, held: Held) -> (Entity, Entity) {
+pub fn spawn_cape(game: &mut Sim, held: Held) -> (Entity, Entity) {
     let cloth = game.spawn(cape());
     let top = || ClothAttachment::edge(ClothEdge::Top);
     let pins = ClothPins::edges([ClothEdge::Top]);
     match held {
         Held::Pinned => {
-            game.app.world_mut().entity_mut(cloth).insert(pins);
+            game.insert(cloth, pins);
             (cloth, cloth)
         }
         Held::Child => {

@@ -6,22 +6,15 @@ use bevy_math::Vec3;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::{Path, Sim, When, furthest};
 
-use crate::game::{Game, HELD, Held, Mover, When, cape, spawn_cape};
+use crate::game::{HELD, Held, cape, film, game, spawn_cape};
 
 /// The cape as it hangs, by its own size.
-fn shape(game: &Game, cloth: Entity) -> Vec<Vec3> {
+fn shape(game: &Sim, cloth: Entity) -> Vec<Vec3> {
     let particles: &ClothParticles = game.get(cloth);
     let frame: &ClothFrame = game.get(cloth);
     particles.positions().map(|p| p / frame.scale()).collect()
-}
-
-fn furthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    assert_eq!(a.len(), b.len());
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| a.distance(*b))
-        .fold(0.0, f32::max)
 }
 
 #[test]
@@ -37,10 +30,9 @@ fn a_scale_that_changes_at_once_keeps_the_shape() {
         Vec3::splat(-1.0),
     ] {
         for fixed in [Vec3::ONE, Vec3::new(1.0, 0.8, 0.6)] {
-            let mut game = Game::new(60.0, 60.0);
+            let mut game = game(60.0, 60.0);
             let (cloth, body) = spawn_cape(&mut game, Held::Pinned);
-            game.app.world_mut().resource_mut::<ClothSettings>().gravity =
-                Vec3::new(0.0, -6.0, -6.0);
+            game.settings().gravity = Vec3::new(0.0, -6.0, -6.0);
             game.edit::<Transform>(body, |place| place.scale = fixed);
             game.frames(30);
             // It swings, and is far from its rest shape.
@@ -84,23 +76,17 @@ fn there_and_back(t: f32) -> f32 {
 fn a_tween_keeps_the_shape_in_each_frame() {
     for fps in [30.0, 60.0, 144.0] {
         for held in HELD {
-            let mut game = Game::new(fps, 60.0);
+            let mut game = game(fps, 60.0);
             game.app.add_systems(Update, tween);
             let (cloth, body) = spawn_cape(&mut game, held);
-            game.app
-                .world_mut()
-                .entity_mut(body)
-                .insert(Tween(there_and_back));
+            game.insert(body, Tween(there_and_back));
             if matches!(held, Held::Attached | Held::Sprung) {
                 // The cloth itself grows as well.
-                game.app
-                    .world_mut()
-                    .entity_mut(cloth)
-                    .insert(Tween(there_and_back));
+                game.insert(cloth, Tween(there_and_back));
             }
             game.seconds(2.0);
             let before = shape(&game, cloth);
-            game.film();
+            film(&mut game);
             let mut away = 0.0f32;
             let mut largest = 0.0f32;
             for _ in 0..(2.5 * fps) as u32 {
@@ -108,7 +94,7 @@ fn a_tween_keeps_the_shape_in_each_frame() {
                 away = away.max(furthest(&before, &shape(&game, cloth)));
                 largest = largest.max(game.get::<ClothFrame>(cloth).scale().x);
             }
-            let film = game.film();
+            let film = film(&mut game);
             let name = format!("{fps} {held:?}");
             println!(
                 "{name}: {away} m, {} , {} m/s",
@@ -129,17 +115,14 @@ fn a_cape_that_grows_goes_where_its_holder_goes() {
     fn walk(t: f32) -> Transform {
         Transform::from_xyz((t - 1.0).max(0.0), 0.0, 0.0)
     }
-    let mut game = Game::new(60.0, 60.0);
+    let mut game = game(60.0, 60.0);
     game.app.add_systems(Update, tween);
     let (cloth, body) = spawn_cape(&mut game, Held::Attached);
-    let mover = Mover(When::PostUpdate, walk);
-    game.app.world_mut().entity_mut(body).insert(mover);
-    game.app
-        .world_mut()
-        .entity_mut(cloth)
-        .insert(Tween(there_and_back));
+    let mover = Path::when(When::PostUpdate, walk);
+    game.insert(body, mover);
+    game.insert(cloth, Tween(there_and_back));
     game.seconds(5.0);
-    let film = game.film();
+    let film = film(&mut game);
     assert!(film.stretch() < 0.05, "{}", film.stretch());
     let middle = 0.5 * (game.at(cloth, 0) + game.at(cloth, 15));
     let place = game.get::<Transform>(body).translation;
@@ -148,7 +131,7 @@ fn a_cape_that_grows_goes_where_its_holder_goes() {
 
 #[test]
 fn free_fall_goes_on() {
-    let mut game = Game::new(60.0, 60.0);
+    let mut game = game(60.0, 60.0);
     let cloth = game.spawn(cape());
     game.edit::<ClothMaterial>(cloth, |material| material.damping = 0.0);
     game.seconds(0.5);

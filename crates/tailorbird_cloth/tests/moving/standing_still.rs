@@ -5,8 +5,9 @@ use bevy_math::Vec3;
 use bevy_time::{Time, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::Sim;
 
-use crate::game::{Game, HELD, SIZE, cape, spawn_cape};
+use crate::game::{HELD, SIZE, cape, film, game, spawn_cape};
 
 const RATES: [f64; 3] = [30.0, 60.0, 144.0];
 
@@ -28,15 +29,15 @@ const ALL: [Why; 5] = [
     Why::TakenOff,
 ];
 
-fn stop(game: &mut Game, cloth: Entity, why: Why, stops: bool) {
+fn stop(game: &mut Sim, cloth: Entity, why: Why, stops: bool) {
     match why {
         Why::Paused => game.pause(stops),
         Why::StandsStill => {
-            let mut time = game.app.world_mut().resource_mut::<Time<Virtual>>();
+            let mut time = game.resource_mut::<Time<Virtual>>();
             time.set_relative_speed(if stops { 0.0 } else { 1.0 });
         }
         Why::SettingsPaused => {
-            game.app.world_mut().resource_mut::<ClothSettings>().paused = stops;
+            game.settings().paused = stops;
         }
         Why::Disabled => {
             let mut cloth = game.app.world_mut().entity_mut(cloth);
@@ -68,7 +69,7 @@ fn what_moved_meanwhile_is_not_felt() {
         for held in HELD {
             for why in ALL {
                 for way in [0.5, 2.0] {
-                    let mut game = Game::new(fps, 60.0);
+                    let mut game = game(fps, 60.0);
                     let (cloth, body) = spawn_cape(&mut game, held);
                     game.seconds(2.0);
                     let before = game.at(cloth, 300);
@@ -82,13 +83,13 @@ fn what_moved_meanwhile_is_not_felt() {
                     }
                     game.frames(3);
                     stop(&mut game, cloth, why, false);
-                    game.film();
+                    film(&mut game);
                     let mut speed = 0.0f32;
                     for _ in 0..20 {
                         game.frames(1);
                         speed = speed.max(game.fastest(cloth));
                     }
-                    let film = game.film();
+                    let film = film(&mut game);
                     let name = format!("{fps} {held:?} {why:?} {way}");
                     assert!(speed < 0.5, "{name}: {speed} m/s");
                     assert!(film.stretch() < 0.05, "{name}: {}", film.stretch());
@@ -105,7 +106,7 @@ fn what_moved_meanwhile_is_not_felt() {
 fn targets_that_moved_meanwhile_are_not_felt() {
     for space in [ClothTargetSpace::Frame, ClothTargetSpace::World] {
         for why in ALL {
-            let mut game = Game::new(60.0, 60.0);
+            let mut game = game(60.0, 60.0);
             let held =
                 (0..SIZE.element_product()).map(|i| if i < SIZE.x { 0.0 } else { f32::INFINITY });
             let cloth = game.spawn((
@@ -114,7 +115,7 @@ fn targets_that_moved_meanwhile_are_not_felt() {
                 ClothMotionTargets::in_space(space),
             ));
             let rest = game.get::<Cloth>(cloth).rest_positions();
-            let aim = |game: &mut Game, way: Vec3| {
+            let aim = |game: &mut Sim, way: Vec3| {
                 game.edit::<ClothMotionTargets>(cloth, |targets| {
                     targets.set_positions(rest.iter().map(|p| *p + way));
                 });
@@ -142,10 +143,10 @@ fn targets_that_moved_meanwhile_are_not_felt() {
 fn what_moved_in_a_frame_that_took_very_long_is_not_felt() {
     for fps in RATES {
         for held in HELD {
-            let mut game = Game::new(fps, 60.0);
+            let mut game = game(fps, 60.0);
             let (cloth, body) = spawn_cape(&mut game, held);
             game.seconds(2.0);
-            game.film();
+            film(&mut game);
             game.set_frame(std::time::Duration::from_secs(10));
             game.frames(1);
             game.shift(body, Vec3::X * 1.5);
@@ -156,7 +157,7 @@ fn what_moved_in_a_frame_that_took_very_long_is_not_felt() {
                 speed = speed.max(game.fastest(cloth));
             }
             assert!(speed < 0.5, "{fps} {held:?}: {speed} m/s");
-            assert!(game.film().stretch() < 0.05);
+            assert!(film(&mut game).stretch() < 0.05);
         }
     }
 }
@@ -164,7 +165,7 @@ fn what_moved_in_a_frame_that_took_very_long_is_not_felt() {
 /// A body that moved meanwhile sweeps nothing along.
 #[test]
 fn a_collider_that_moved_meanwhile_sweeps_nothing_along() {
-    let mut game = Game::new(60.0, 60.0);
+    let mut game = game(60.0, 60.0);
     let cloth = game.spawn((cape(), ClothPins::edges([ClothEdge::Top])));
     let ball = game.spawn((
         ClothCollider::sphere(0.2),

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use bevy_app::{App, FixedPostUpdate, FixedUpdate, TaskPoolOptions, TaskPoolPlugin, Update};
+use bevy_app::{FixedPostUpdate, FixedUpdate, Update};
 use bevy_ecs::prelude::*;
-use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::Sim;
 
 use crate::{
     CALM, WATCHED,
@@ -16,25 +16,15 @@ use crate::{
 
 /// Lets a world happen.
 pub fn happen(description: &Description) -> Film {
-    let mut app = App::new();
-    let mut pools = TaskPoolOptions::default();
-    pools.compute.min_threads = 1;
-    pools.compute.max_threads = 1;
-    let pools = TaskPoolPlugin {
-        task_pool_options: pools,
-    };
     let clock = &description.clock;
-    app.add_plugins((pools, TimePlugin, ClothPlugin::default()))
-        .insert_resource(if description.air {
-            ClothWind::default()
-        } else {
-            ClothWind::vacuum()
-        })
-        .insert_resource(Time::<Fixed>::from_hz(clock.hz))
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(
-            1.0 / clock.fps,
-        )))
-        .insert_resource(Film::new(clock.hz, description.air))
+    let mut sim = Sim::new();
+    sim.set_hz(clock.hz);
+    sim.set_frame(Duration::from_secs_f64(1.0 / clock.fps));
+    let app = &mut sim.app;
+    if !description.air {
+        app.insert_resource(ClothWind::vacuum());
+    }
+    app.insert_resource(Film::new(clock.hz, description.air))
         .add_systems(FixedPostUpdate, film.after(ClothSystems::Writeback));
     if clock.fixed {
         app.add_systems(FixedUpdate, play);
@@ -43,20 +33,21 @@ pub fn happen(description: &Description) -> Film {
     }
     let play = Play::new(app.world_mut(), description);
     app.insert_resource(play);
-    app.finish();
-    app.cleanup();
     let enough = (clock.hz * f64::from(CALM + WATCHED)).ceil() as usize;
-    while app.world().resource::<Film>().calm_steps() < enough {
-        app.update();
-        let paused = app.world_mut().resource_mut::<Play>().take_pause();
+    while sim.resource::<Film>().calm_steps() < enough {
+        sim.frames(1);
+        let paused = sim.resource_mut::<Play>().take_pause();
         if let Some((holder, by)) = paused {
-            app.world_mut().resource_mut::<Time<Virtual>>().pause();
-            app.update();
-            let world = app.world_mut();
+            sim.pause(true);
+            sim.frames(1);
+            let world = sim.app.world_mut();
             world.resource_scope(|world, mut play: Mut<Play>| play.shift(world, holder, by));
-            app.update();
-            app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+            sim.frames(1);
+            sim.pause(false);
         }
     }
-    app.world_mut().remove_resource::<Film>().unwrap()
+    sim.app.world_mut().remove_resource::<Film>().unwrap()
 }
+
+/// For the meshes of the example `headless`.
+pub use tailorbird_test::unit;

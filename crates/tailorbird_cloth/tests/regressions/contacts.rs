@@ -4,8 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Quat, UVec2, Vec2, Vec3};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{G, Scene, Sheet, rigid};
+use tailorbird_test::{G, Scene, Sheet, external, rigid};
 
 /// Wide things with their top about 0.1 m above their origin.
 fn tables() -> Vec<(&'static str, ClothCollider, Quat)> {
@@ -67,7 +66,7 @@ fn velocity_growing_without_end_on_a_resting_contact() {
         let mut sheet = Sheet::new(&scene);
         let place = Transform::from_xyz(0.0, 0.0, -0.5).with_rotation(rotation);
         let collider = collider.with_friction(2.0);
-        sheet.app.world_mut().spawn((collider, place));
+        sheet.sim.app.world_mut().spawn((collider, place));
         sheet.steps(600);
         let lowest = sheet.particles().positions().map(|p| p.z);
         let lowest = lowest.fold(0.0, f32::min);
@@ -98,10 +97,10 @@ fn very_low_mass_per_particle_exploding() {
             };
             scene.material.areal_density = areal_density;
             let mut sheet = Sheet::new(&scene);
-            let ball = sheet.app.world_mut().spawn_empty().id();
+            let ball = sheet.sim.spawn(());
             if !is_body {
                 let ball = (ClothCollider::sphere(0.3), Transform::default());
-                sheet.app.world_mut().spawn(ball);
+                sheet.sim.app.world_mut().spawn(ball);
             }
             let place = |step: u8| Vec3::Z * (SPEED * f32::from(step) / 60.0 - 0.5);
             let mut touched = false;
@@ -111,10 +110,11 @@ fn very_low_mass_per_particle_exploding() {
                     push_ball(&mut sheet, ball, 0.3, [start, end], 1.0 / 50.0);
                 } else {
                     let mut balls = sheet
+                        .sim
                         .app
                         .world_mut()
                         .query_filtered::<&mut Transform, With<ClothCollider>>();
-                    for mut at in balls.iter_mut(sheet.app.world_mut()) {
+                    for mut at in balls.iter_mut(sheet.sim.app.world_mut()) {
                         at.translation = place(step + 1);
                     }
                 }
@@ -143,20 +143,15 @@ fn push_ball(
     inv_mass: f32,
 ) {
     let inv_inertia = inv_mass / (0.4 * radius * radius);
-    let mut external = sheet
-        .app
-        .world_mut()
-        .resource_mut::<ClothExternalColliders>();
-    external.push(ClothExternalCollider {
+    let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
+    colliders.push(external(
         entity,
-        part: 0,
-        shape: ClothColliderShape::Sphere { radius },
-        friction: 0.5,
-        margin: 0.0,
-        layers: ClothLayers::ALL,
-        start: Isometry3d::from_translation(start),
-        end: Isometry3d::from_translation(end),
-        body: Some(ClothColliderBody {
+        ClothColliderShape::Sphere { radius },
+        [
+            Isometry3d::from_translation(start),
+            Isometry3d::from_translation(end),
+        ],
+        Some(ClothColliderBody {
             body: entity,
             inv_mass: Vec3::splat(inv_mass),
             inv_inertia: Mat3::IDENTITY * inv_inertia,
@@ -164,7 +159,7 @@ fn push_ball(
             linear_velocity: (end - start) * 60.0,
             angular_velocity: Vec3::ZERO,
         }),
-    });
+    ));
 }
 
 /// Positions of tiles or balls of a square of 2 m.
@@ -183,7 +178,7 @@ fn a_fixed_contact_buffer_overflowing_silently() {
     for place in places(20) {
         let tile = ClothCollider::cuboid(0.099, 0.099, 0.1);
         let at = Transform::from_translation(place - Vec3::Z * 0.1);
-        sheet.app.world_mut().spawn((tile, at));
+        sheet.sim.app.world_mut().spawn((tile, at));
     }
     sheet.steps(60);
     let surface = -0.05 + rigid().thickness;
@@ -202,7 +197,7 @@ fn a_force_given_per_body_applied_per_vertex() {
         });
         let balls: Vec<(Entity, Vec3)> = places(16)
             .map(|place| {
-                let entity = sheet.app.world_mut().spawn_empty().id();
+                let entity = sheet.sim.spawn(());
                 (entity, place - Vec3::Z * 0.1)
             })
             .collect();
@@ -213,7 +208,7 @@ fn a_force_given_per_body_applied_per_vertex() {
             }
             sheet.step();
             if step >= 120 {
-                let reactions = sheet.app.world().resource::<ClothReactions>();
+                let reactions = sheet.sim.resource::<ClothReactions>();
                 for ((entity, _), carried) in balls.iter().zip(&mut carried) {
                     *carried -= reactions.get(*entity).map_or(0.0, |r| r.impulse.z);
                 }
@@ -246,7 +241,7 @@ fn results_depending_on_hashmap_order() {
             let at = Transform::from_translation(at)
                 .with_rotation(rotation)
                 .with_scale(Vec3::splat(0.4));
-            let mut entity = sheet.app.world_mut().spawn((collider, at));
+            let mut entity = sheet.sim.app.world_mut().spawn((collider, at));
             if mixed && k % 3 == 1 {
                 // Stored elsewhere from now on, and met in another order.
                 entity.insert(ClothLayers::ALL);

@@ -2,14 +2,13 @@
 
 use std::time::Duration;
 
-use bevy_app::{App, TaskPoolPlugin, Update};
+use bevy_app::Update;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, UVec2, Vec2, Vec3};
-use bevy_time::{Time, TimePlugin, TimeUpdateStrategy, Virtual};
+use bevy_time::{Time, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet, rigid};
+use tailorbird_test::{DT, Scene, Sheet, Sim, external, rigid};
 
 /// The velocities of all particles after each substep [m/s].
 #[derive(Resource, Default)]
@@ -29,14 +28,13 @@ fn noted(pins: ClothPins) -> Sheet {
         pins,
         ..Scene::default()
     });
-    sheet.app.init_resource::<Substeps>();
+    sheet.sim.app.init_resource::<Substeps>();
     let stage = note.after(ClothSubstepSystems::Collide);
-    sheet.app.add_systems(ClothSubstep, stage);
+    sheet.sim.app.add_systems(ClothSubstep, stage);
     sheet
 }
 
 const SPEED: f32 = 10.0;
-const DT: f32 = 1.0 / 60.0;
 
 /// In each substep of every step the same speed, not all of it in the first one.
 #[test]
@@ -51,7 +49,7 @@ fn a_velocity_spike_when_a_kinematic_vertex_is_applied_only_in_the_first_substep
         sheet.change(|held: &mut ClothPins| held.pins = pins);
         sheet.step();
     }
-    let substeps = &sheet.app.world().resource::<Substeps>().0;
+    let substeps = &sheet.sim.resource::<Substeps>().0;
     assert!(substeps.len() >= 120);
     for (k, velocities) in substeps.iter().enumerate() {
         for v in &velocities[..9] {
@@ -69,13 +67,13 @@ fn a_velocity_spike_when_a_kinematic_vertex_is_applied_only_in_the_first_substep
         let mut sheet = noted(ClothPins::default());
         let name = format!("{:?}", collider.shape);
         let mut at = Transform::from_xyz(0.0, 0.0, -0.5).with_rotation(rotation);
-        let plate = sheet.app.world_mut().spawn((collider, at)).id();
+        let plate = sheet.sim.spawn((collider, at));
         for _ in 0..30 {
             sheet.step();
             at.translation.z += SPEED * DT;
-            *sheet.app.world_mut().get_mut(plate).expect("a plate") = at;
+            sheet.sim.move_to(plate, at);
         }
-        let substeps = &sheet.app.world().resource::<Substeps>().0;
+        let substeps = &sheet.sim.resource::<Substeps>().0;
         let (early, late) = substeps.split_at(substeps.len() / 2);
         for v in early.iter().flatten() {
             assert!(v.length() < 1.01 * SPEED, "{name}: {v}");
@@ -98,14 +96,14 @@ fn the_last_motion_replayed_when_no_new_input_comes() {
         });
         let plate = ClothCollider::cuboid(4.0, 4.0, 0.2).with_friction(2.0);
         let mut at = Transform::from_xyz(0.0, 0.0, -0.11);
-        let plate = sheet.app.world_mut().spawn((plate, at)).id();
+        let plate = sheet.sim.spawn((plate, at));
         sheet.steps(60);
         let middle = |sheet: &Sheet| sheet.particles().position(40);
         let start = middle(&sheet);
         // 0.12 m/s, which friction gives the sheet within a step.
         for _ in 0..20 {
             at.translation.x += 0.002;
-            *sheet.app.world_mut().get_mut(plate).expect("a plate") = at;
+            sheet.sim.move_to(plate, at);
             sheet.steps(steps_per_move);
         }
         let carried = middle(&sheet).x - start.x;
@@ -125,8 +123,8 @@ fn the_cloth_vanishing_after_an_extreme_move() {
     });
     let ball = ClothCollider::sphere(0.3);
     let beside = Transform::from_xyz(0.0, 0.0, -0.35);
-    let ball = sheet.app.world_mut().spawn((ball, beside)).id();
-    let plate = sheet.app.world_mut().spawn_empty().id();
+    let ball = sheet.sim.spawn((ball, beside));
+    let plate = sheet.sim.spawn(());
     sheet.steps(30);
     for far in [10.0f32, 1e2, 1e4, 1e6] {
         let there = Transform::from_xyz(far, -far, 0.5 * far).with_rotation(Quat::from_euler(
@@ -139,32 +137,27 @@ fn the_cloth_vanishing_after_an_extreme_move() {
             .into_iter()
             .enumerate()
         {
-            *sheet.app.world_mut().get_mut(sheet.entity).expect("there") = at;
-            *sheet.app.world_mut().get_mut(ball).expect("there") = if step % 2 == 0 {
-                Transform::from_translation(Vec3::splat(-far))
-            } else {
-                beside
-            };
+            sheet.sim.move_to(sheet.entity, at);
+            sheet.sim.move_to(
+                ball,
+                if step % 2 == 0 {
+                    Transform::from_translation(Vec3::splat(-far))
+                } else {
+                    beside
+                },
+            );
             // Something that is told to go through the sheet within a step, which nothing stops.
             let aside = |z: f32| Isometry3d::from_translation(Vec3::new(0.3, 0.2, z));
             let way = far.min(1e4);
-            let mut external = sheet
-                .app
-                .world_mut()
-                .resource_mut::<ClothExternalColliders>();
-            external.push(ClothExternalCollider {
-                entity: plate,
-                part: 0,
-                shape: ClothColliderShape::Cuboid {
+            let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
+            colliders.push(external(
+                plate,
+                ClothColliderShape::Cuboid {
                     size: Vec3::new(0.8, 0.6, 0.02),
                 },
-                friction: 0.5,
-                margin: 0.0,
-                layers: ClothLayers::ALL,
-                start: aside(-way),
-                end: aside(way),
-                body: None,
-            });
+                [aside(-way), aside(way)],
+                None,
+            ));
             sheet.step();
             assert_eq!(sheet.complaint(), None, "{far} m, step {step}");
         }
@@ -183,60 +176,42 @@ fn the_cloth_vanishing_after_an_extreme_move() {
 fn motion_depending_on_dt_squared() {
     const FRAMES: [f32; 5] = [30.0, 144.0, 60.0, 20.0, 100.0];
     for pushed in [false, true] {
-        let mut app = App::new();
-        app.add_plugins((
-            TaskPoolPlugin::default(),
-            TimePlugin,
-            ClothPlugin::new(Update),
-        ))
-        .insert_resource(ClothWind::vacuum())
-        .insert_resource(ClothSettings {
-            gravity: Vec3::ZERO,
-            ..ClothSettings::default()
-        })
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+        let mut sim = Sim::stepping_in(Update).without_gravity();
+        sim.app.insert_resource(ClothWind::vacuum());
         let cloth = Cloth::grid(Vec2::splat(0.5), UVec2::splat(7)).centered();
         let material = ClothMaterial {
             damping: 0.0,
             ..rigid()
         };
-        let entity = app
-            .world_mut()
-            .spawn((cloth, material, ClothSleep::never()))
-            .id();
-        app.finish();
-        app.cleanup();
-        app.update();
+        let entity = sim.spawn((cloth, material, ClothSleep::never()));
+        sim.set_frame(Duration::ZERO);
+        sim.frames(0);
         let plate = pushed.then(|| {
             let place = Transform::from_xyz(0.0, 0.0, -0.11);
             let plate = ClothCollider::cuboid(2.0, 2.0, 0.2);
-            app.world_mut().spawn((plate, place)).id()
+            sim.spawn((plate, place))
         });
-        let heights = |app: &App| -> Vec<f32> {
-            let particles = app.world().get::<ClothParticles>(entity).expect("there");
-            particles.positions().map(|p| p.z).collect()
-        };
-        let mut before = heights(&app);
+        let heights =
+            |sim: &Sim| -> Vec<f32> { sim.particles(entity).positions().map(|p| p.z).collect() };
+        let mut before = heights(&sim);
         for frame in 0..100 {
             let seconds = 1.0 / FRAMES[frame % 5];
-            app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
-                seconds,
-            )));
+            sim.set_frame(Duration::from_secs_f32(seconds));
             if let Some(plate) = plate {
-                let mut at = app.world_mut().get_mut::<Transform>(plate);
                 // The plate goes on for half of the time.
-                if let Some(at) = at.as_mut().filter(|_| frame < 50) {
-                    at.translation.z += 3.0 * seconds;
+                if frame < 50 {
+                    sim.shift(plate, Vec3::Z * 3.0 * seconds);
                 }
             } else if frame == 0 {
-                let mut forces = app.world_mut().get_mut::<ClothForces>(entity).expect("it");
-                for i in 0..49 {
-                    forces.add_acceleration(i, Vec3::Z * 3.0 / seconds);
-                }
+                sim.edit(entity, |forces: &mut ClothForces| {
+                    for i in 0..49 {
+                        forces.add_acceleration(i, Vec3::Z * 3.0 / seconds);
+                    }
+                });
             }
-            app.update();
-            assert!(app.world().resource::<Time<Virtual>>().delta_secs() > 0.0);
-            let now = heights(&app);
+            sim.frames(1);
+            assert!(sim.resource::<Time<Virtual>>().delta_secs() > 0.0);
+            let now = heights(&sim);
             if frame > 5 {
                 for (to, from) in now.iter().zip(&before) {
                     let speed = (to - from) / seconds;

@@ -25,10 +25,6 @@
 
 #![cfg(test)]
 
-#[path = "../chains/scene.rs"]
-#[expect(dead_code, reason = "shared with the test `chains`")]
-mod scene;
-
 mod contacts;
 mod input;
 mod meshes;

@@ -2,8 +2,7 @@
 
 use bevy_math::Vec3;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet};
 
 /// An irregular sheet of 1 m with a side of `n` vertices, and each triangle a second time from behind if it has two sides.
 fn sheet(n: u32, two_sides: bool) -> Cloth {

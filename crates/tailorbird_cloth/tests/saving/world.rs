@@ -1,6 +1,6 @@
 //! Entities through reflection, as Bevy writes worlds and scenes.
 
-use bevy_app::{App, TaskPoolPlugin};
+use bevy_app::App;
 use bevy_ecs::{
     entity::EntityHashMap,
     prelude::*,
@@ -12,23 +12,15 @@ use bevy_reflect::{
     ReflectSerialize,
     serde::{ReflectDeserializer, ReflectSerializer},
 };
-use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use serde::de::DeserializeSeed;
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::Sim;
 
-fn app() -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        TaskPoolPlugin::default(),
-        TimePlugin,
-        ClothPlugin::default(),
-    ))
-    .register_type::<Transform>()
-    .insert_resource(TimeUpdateStrategy::ManualDuration(
-        std::time::Duration::from_secs_f64(1.0 / 64.0),
-    ));
-    app
+fn sim() -> Sim {
+    let mut sim = Sim::new();
+    sim.app.register_type::<Transform>();
+    sim
 }
 
 /// Entities, and their components in RON.
@@ -95,45 +87,37 @@ fn all_that_is_reflected_comes_back() {
 }
 
 fn a_world_comes_back(all: bool) {
-    let mut before = app();
-    let world = before.world_mut();
-    let pole = world.spawn(Transform::from_xyz(0.0, 2.0, 0.0)).id();
-    let flag = world
-        .spawn((
-            Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(12, 8)),
-            ClothMaterial::silk(),
-            ClothPins::corners([ClothCorner::BottomLeft]),
-            ClothSolver::GaussSeidel,
-            ClothShading::Flat,
-            ClothInertia::none(),
-            ClothSleep::never(),
-            ClothLayers::new(1, 2),
-            ClothMotionConstraints::at_most(0.5),
-            ClothMotionTargets::in_space(ClothTargetSpace::World),
-            Transform::from_xyz(0.0, 2.0, 0.0),
-        ))
-        .id();
-    let attachment = ClothAttachment::edge(ClothEdge::Left).with_break_force(500.0);
-    let hold = world
-        .spawn((attachment.to(pole), ClothAttachmentOf(flag)))
-        .id();
-    let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-    let rock = world
-        .spawn((
-            ClothCollider::convex_hull(&points).unwrap(),
-            Transform::from_xyz(5.0, 0.0, 0.0),
-        ))
-        .id();
-    let fan = world.spawn(ClothWindZone::sphere(2.0, Vec3::X)).id();
-    for _ in 0..4 {
-        before.update();
-    }
+    let mut before = sim();
 
-    let file = save(&before, &[pole, flag, hold, rock, fan], all);
-    let mut after = app();
+    let pole = before.spawn(Transform::from_xyz(0.0, 2.0, 0.0));
+    let flag = before.spawn((
+        Cloth::grid(Vec2::new(1.5, 1.0), UVec2::new(12, 8)),
+        ClothMaterial::silk(),
+        ClothPins::corners([ClothCorner::BottomLeft]),
+        ClothSolver::GaussSeidel,
+        ClothShading::Flat,
+        ClothInertia::none(),
+        ClothSleep::never(),
+        ClothLayers::new(1, 2),
+        ClothMotionConstraints::at_most(0.5),
+        ClothMotionTargets::in_space(ClothTargetSpace::World),
+        Transform::from_xyz(0.0, 2.0, 0.0),
+    ));
+    let attachment = ClothAttachment::edge(ClothEdge::Left).with_break_force(500.0);
+    let hold = before.spawn((attachment.to(pole), ClothAttachmentOf(flag)));
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let rock = before.spawn((
+        ClothCollider::convex_hull(&points).unwrap(),
+        Transform::from_xyz(5.0, 0.0, 0.0),
+    ));
+    let fan = before.spawn(ClothWindZone::sphere(2.0, Vec3::X));
+    before.steps(4);
+
+    let file = save(&before.app, &[pole, flag, hold, rock, fan], all);
+    let mut after = sim();
     // So that entities are others than before.
-    after.world_mut().spawn_batch([(), (), ()]);
-    let others = load(&mut after, &file);
+    after.app.world_mut().spawn_batch([(), (), ()]);
+    let others = load(&mut after.app, &file);
     let [pole_after, flag_after, hold_after, rock_after, fan_after] = others[..] else {
         panic!("{others:?}");
     };
@@ -142,8 +126,8 @@ fn a_world_comes_back(all: bool) {
         ($(($before:ident, $after:ident): $($type:ty),+;)+) => {
             $($(
                 assert_eq!(
-                    after.world().get::<$type>($after).unwrap(),
-                    before.world().get::<$type>($before).unwrap(),
+                    after.get::<$type>($after),
+                    before.get::<$type>($before),
                 );
             )+)+
         };
@@ -156,25 +140,29 @@ fn a_world_comes_back(all: bool) {
         (rock, rock_after): ClothCollider, Transform;
         (fan, fan_after): ClothWindZone, Transform;
     }
-    let world = after.world();
+    let world = after.app.world();
     assert_eq!(world.get(hold_after), Some(&ClothAttachmentOf(flag_after)));
     assert_eq!(world.get(hold_after), Some(&ClothAttachedTo(pole_after)));
 
     // What comes with a cloth is not in the file, and there all the same: the cloth hangs on its pole.
-    for _ in 0..8 {
-        after.update();
-    }
-    let particles = after.world().get::<ClothParticles>(flag_after).unwrap();
+    after.steps(8);
+    let particles = after.get::<ClothParticles>(flag_after);
     assert_eq!(particles.len(), 12 * 8);
-    let status = after.world().get::<ClothStatus>(flag_after).unwrap();
+    let status = after.get::<ClothStatus>(flag_after);
     assert_eq!(status, &ClothStatus::default());
-    assert!(after.world().get::<ClothAttachments>(flag_after).is_some());
+    assert!(
+        after
+            .app
+            .world()
+            .get::<ClothAttachments>(flag_after)
+            .is_some()
+    );
 }
 
 /// Reflection has the errors of serde, and with them those of the constructors.
 #[test]
 fn a_wrong_shape_is_an_error_of_reflection_too() {
-    let app = app();
+    let Sim { app, .. } = sim();
     let registry = app.world().resource::<AppTypeRegistry>().read();
     let text = r#"{"tailorbird_cloth::collider::ClothCollider": (shape: Sphere(radius: NaN))}"#;
     let mut ron = ron::Deserializer::from_str(text).unwrap();
@@ -188,7 +176,7 @@ fn a_wrong_shape_is_an_error_of_reflection_too() {
 /// All parts of what can be saved are known to the registry as well.
 #[test]
 fn resources_are_known_to_reflection() {
-    let app = app();
+    let Sim { app, .. } = sim();
     let registry = app.world().resource::<AppTypeRegistry>().read();
     let settings = ClothSettings {
         iterations: 3,

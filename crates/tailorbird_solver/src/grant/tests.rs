@@ -1,7 +1,7 @@
 //! Tests of grants.
 
+use crate::properties::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use proptest::prelude::*;
 
 use super::*;
 use crate::{

@@ -134,7 +134,7 @@ pub fn classic(
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    use crate::properties::*;
 
     use super::*;
 

@@ -158,8 +158,8 @@ fn solve_run<M>(
 
 #[cfg(test)]
 mod tests {
+    use crate::properties::*;
     use bevy_math::Vec3;
-    use proptest::prelude::*;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 use std::f32::consts::TAU;
 
+use crate::properties::*;
 use bevy_math::Quat;
-use proptest::prelude::*;
 
 use super::*;
 use crate::{kernels::packed::with_packed, points::Points, topology::hinges::HingeConstraints};

@@ -1,5 +1,5 @@
+use crate::properties::*;
 use bevy_math::Vec3;
-use proptest::prelude::*;
 
 use super::*;
 use crate::numbers::Numbers;
@@ -115,57 +115,4 @@ fn one_in_the_middle_of_its_backstop_leaves_along_the_normal() {
         free: true,
     };
     assert_eq!(held(&one), [Vec3::Z * -0.25; 2]);
-}
-
-#[test]
-#[ignore = "prints times"]
-fn times_of_limits() {
-    use crate::kernels::lanes::levels;
-    use crate::wall_clock::WallClock;
-    let n = 16_384;
-    let targets: Points = (0..n).map(|i| Vec3::new(i as f32, 0.0, 0.0)).collect();
-    let normals: Points = (0..n).map(|_| Vec3::Z).collect();
-    let (most, distance, radius) = (vec![0.1; n], vec![0.05; n], vec![1.0; n]);
-    let mut inv_mass = Numbers::from(vec![1.0; n]);
-    for level in levels() {
-        for (name, offset, backstop) in [
-            ("free", 0.0, false),
-            ("stopped", 0.2, false),
-            ("free, backstop", 0.0, true),
-            ("behind the backstop", -0.08, true),
-        ] {
-            let moved: Points = targets.iter().map(|p| p + Vec3::Z * offset).collect();
-            let (mut place, mut before) = (moved.clone(), moved.clone());
-            let limits = Limits {
-                targets: [&targets, &targets],
-                fractions: (0.25, 0.5),
-                max_distance: &most,
-                backstop: backstop.then_some(Backstop {
-                    normals: [&normals, &normals],
-                    distance: &distance,
-                    radius: &radius,
-                }),
-            };
-            let mut best = f64::INFINITY;
-            for _ in 0..200 {
-                place.copy_from(&moved);
-                let position = SharedPoints::new(&mut place);
-                let previous = SharedPoints::new(&mut before);
-                let start = WallClock::start();
-                hold(
-                    level,
-                    limits,
-                    position,
-                    previous,
-                    Shared::new(&mut inv_mass),
-                    0..n,
-                );
-                best = best.min(start.elapsed().as_secs_f64());
-            }
-            println!(
-                "{level:?}, {name}: {:.2} ns per particle",
-                best / n as f64 * 1e9
-            );
-        }
-    }
 }

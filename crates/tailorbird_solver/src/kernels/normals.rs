@@ -141,36 +141,4 @@ mod tests {
             }
         }
     }
-
-    /// `cargo test --release -p tailorbird_cloth --lib times_of_normals -- --ignored --nocapture`
-    #[test]
-    #[ignore = "prints times"]
-    fn times_of_normals() {
-        for size in [64u32, 128, 256] {
-            let n = (size * size) as usize;
-            let lattice = Lattice {
-                columns: size,
-                rows: size,
-                spacing: Vec2::ONE,
-            };
-            let position: Points = (0..n)
-                .map(|i| Vec3::new((i / 64) as f32, (i % 64) as f32, (i as f32).sin()))
-                .collect();
-            let mut normals = Points::zeroed(n);
-            for level in levels() {
-                let passes = 4_000_000 / n;
-                let best = (0..5)
-                    .map(|_| {
-                        let start = crate::wall_clock::WallClock::start();
-                        for _ in 0..passes {
-                            let shared = SharedPoints::new(&mut normals);
-                            smooth_lattice(level, &lattice, &position, shared, 0..size as usize);
-                        }
-                        start.elapsed().as_secs_f64() / (passes * n) as f64 * 1e9
-                    })
-                    .fold(f64::MAX, f64::min);
-                println!("{size} {level:?}: {best:.3} ns per particle");
-            }
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Tests of rings.
 
+use crate::properties::*;
 use bevy_math::Vec3;
-use proptest::prelude::*;
 
 use super::{
     lanes::{Shared, SharedPoints, levels},

@@ -1,11 +1,11 @@
 //! Solids against the distances that another library computes, at all speeds, with all instruction sets.
 
+use crate::properties::*;
 use bevy_math::{EulerRot, Mat3, Quat, Vec3};
 use parry3d::{
     query::PointQuery,
     shape::{Capsule as Pill, Cuboid as Block, Cylinder as Can, Segment},
 };
-use proptest::prelude::*;
 
 use super::*;
 use crate::{

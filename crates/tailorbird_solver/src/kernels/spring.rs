@@ -27,7 +27,7 @@ pub fn alpha_tilde(compliance: f32, seconds: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    use crate::properties::*;
 
     use super::*;
 

@@ -66,7 +66,7 @@ fn color_some<const N: usize>(
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    use crate::properties::*;
 
     use super::*;
 

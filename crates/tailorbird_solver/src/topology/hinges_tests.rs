@@ -3,8 +3,8 @@ use std::{
     f32::consts::{FRAC_PI_4, TAU},
 };
 
+use crate::properties::*;
 use bevy_math::{Quat, Vec2};
-use proptest::prelude::*;
 
 use super::*;
 

@@ -1,5 +1,5 @@
+use crate::properties::*;
 use bevy_math::UVec2;
-use proptest::prelude::*;
 
 use super::*;
 use crate::{

@@ -1,7 +1,5 @@
 use std::iter::once;
 
-use crate::wall_clock::WallClock;
-
 use bevy_math::{UVec2, Vec2};
 
 use super::*;
@@ -163,57 +161,5 @@ fn a_triangle_without_area_and_still_air_do_nothing() {
         };
         let [drag, old] = sheet.side_by_side(level, still, once(0..4));
         assert_eq!([&drag, &old], [&sheet.start(), &sheet.start()]);
-    }
-}
-
-/// `cargo test --release -p tailorbird_cloth --lib times_of_wind -- --ignored --nocapture`
-#[test]
-#[ignore = "prints times"]
-fn times_of_wind() {
-    for size in [64u32, 128, 256] {
-        let sheet = Wavy::new(size, size);
-        let (n, air) = ((size * size) as usize, air(1.2, 0.7));
-        let time = |name: &str, f: &mut dyn FnMut()| {
-            f();
-            let passes = 1_000_000 / n;
-            let best = (0..5)
-                .map(|_| {
-                    let start = WallClock::start();
-                    for _ in 0..passes {
-                        f();
-                    }
-                    start.elapsed().as_secs_f64() / (passes * n) as f64 * 1e9
-                })
-                .fold(f64::MAX, f64::min);
-            println!("{size} {name}: {best:.3} ns per particle");
-        };
-        let mut acceleration = sheet.start();
-        time("one by one", &mut || {
-            drag_and_lift(
-                &sheet.triangles,
-                &sheet.rest_areas,
-                air,
-                &sheet.position,
-                &sheet.previous,
-                600.0,
-                &sheet.inv_mass,
-                &mut acceleration,
-            );
-        });
-        for level in levels() {
-            let rows = 0..size as usize;
-            time(&format!("drag and lift {level:?}"), &mut || {
-                drag_and_lift_on_sheet(
-                    level,
-                    sheet.sheet(&mut acceleration),
-                    air,
-                    600.0,
-                    rows.clone(),
-                );
-            });
-            time(&format!("classic {level:?}"), &mut || {
-                classic_on_sheet(level, sheet.sheet(&mut acceleration), WIND, rows.clone());
-            });
-        }
     }
 }

@@ -1,8 +1,8 @@
 //! Air: its effect on a plate and on triangles, and breezes.
 
+use crate::properties::*;
 use bevy_math::{DMat3, DVec3, Isometry3d, Quat, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{cases, vector};
 use crate::{

@@ -1,8 +1,8 @@
 //! Chains of a mesh, open and closed: one Newton step of all edges of each at once.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{
     cases, dense,

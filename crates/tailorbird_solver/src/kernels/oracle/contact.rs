@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
-use proptest::prelude::*;
 
 use super::{cases, vector};
 use crate::{

@@ -1,7 +1,7 @@
 //! Hinges: one projection of the vector constraint Σ Kᵢ xᵢ = 0, or of that of a length.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
-use proptest::prelude::*;
 
 use super::{cases, momentum, vector};
 use crate::{

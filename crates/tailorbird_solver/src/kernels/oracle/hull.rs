@@ -1,9 +1,9 @@
 //! Hulls, as the planes of their faces.
 
+use crate::properties::*;
 use bevy_math::{Vec3, Vec4};
 use fearless_simd::Level;
 use parry3d::{query::PointQuery, shape::ConvexPolyhedron};
-use proptest::prelude::*;
 
 use super::{
     cases,

@@ -2,8 +2,8 @@
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, dense, vector};
 use crate::kernels::{edges::LineStiffness, lanes::levels, lattice};

@@ -22,8 +22,9 @@ mod swept;
 mod tether;
 mod viscosity;
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::test_runner::RngSeed;
 
 use super::{
     lanes::{Shared, SharedPoints},

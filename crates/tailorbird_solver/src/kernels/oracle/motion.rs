@@ -1,8 +1,8 @@
 //! Inertia, limits, springs to anchors, frames that move, and normals.
 
+use crate::properties::*;
 use bevy_math::{DMat3, DVec3, Mat3, Quat, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{cases, vector};
 use crate::{

@@ -1,8 +1,8 @@
 //! The line solve is a step of Newton's: what it leaves falls with the square of what there was.
 
+use crate::properties::*;
 use bevy_math::Vec3;
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, vector};
 use crate::kernels::{edges::LineStiffness, lattice, lines::Give};

@@ -1,8 +1,8 @@
 //! Diagonals: projections one after the other.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, momentum, vector};
 use crate::{

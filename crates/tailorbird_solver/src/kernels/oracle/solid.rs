@@ -1,12 +1,12 @@
 //! Solids with distance functions, and particles that meet them while they move and turn.
 
+use crate::properties::*;
 use bevy_math::{DMat3, DVec3, Mat3, Quat, Vec3};
 use fearless_simd::Level;
 use parry3d::{
     query::PointQuery,
     shape::{Capsule as Pill, Cuboid as Block, Cylinder as Can, Segment},
 };
-use proptest::prelude::*;
 
 use super::{
     cases,

@@ -1,9 +1,9 @@
 //! Moving spheres: paths that enter stop where they do, whatever their length, and slide from there by a radius at most.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
 use fearless_simd::Level;
 use parry3d::{query::PointQuery, shape::Ball};
-use proptest::prelude::*;
 
 use super::{
     cases,

@@ -1,5 +1,6 @@
 //! Half-spaces, heights and contact planes of meshes.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Mat3, UVec2, Vec2, Vec3};
 use fearless_simd::Level;
 use parry3d::{
@@ -7,7 +8,6 @@ use parry3d::{
     shape::HeightField,
     utils::Array2,
 };
-use proptest::prelude::*;
 
 use super::{
     cases,

@@ -1,8 +1,8 @@
 //! Survey of the squeezed and strained edges of a sheet, and damping at squeezed ones.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec2, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, vector};
 use crate::{

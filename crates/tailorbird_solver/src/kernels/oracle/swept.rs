@@ -1,8 +1,8 @@
 //! Long paths against solids, and the search for particles that touch.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Mat3, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{
     cases,

@@ -1,8 +1,8 @@
 //! Tethers: each particle is put back to where they are taut, one tether after the other.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec2, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, vector};
 use crate::{

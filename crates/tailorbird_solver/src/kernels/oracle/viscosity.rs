@@ -1,8 +1,8 @@
 //! Viscosity: neighbours exchange momentum in proportion to the difference of their velocities.
 
+use crate::properties::*;
 use bevy_math::{DVec3, Vec3};
 use fearless_simd::Level;
-use proptest::prelude::*;
 
 use super::{Cloth, cases, cloths, momentum, vector};
 use crate::{

@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use proptest::prelude::*;
+use crate::properties::*;
 
 use super::*;
 use crate::topology::{
@@ -278,89 +278,4 @@ fn an_irregular_square_is_covered() -> Result<(), TestCaseError> {
         check(&positions, &mut build(&positions, &triangles))?;
     }
     Ok(())
-}
-
-#[test]
-#[ignore = "prints the chains of an irregular mesh"]
-fn statistics() {
-    let (positions, triangles) = delaunay(64, 3);
-    report("irregular", &positions, &triangles);
-    let (mut positions, triangles) = grid(64, 64, [1.0, 1.0], |c, r| {
-        hash(c + 1000 * r, 1).is_multiple_of(2)
-    });
-    for (i, p) in positions.iter_mut().enumerate() {
-        p.x += 0.6 * (random(2 * i, 1) - 0.5);
-        p.y += 0.6 * (random(2 * i + 1, 1) - 0.5);
-    }
-    report("jittered", &positions, &triangles);
-    let (positions, triangles) = equilateral(64, 64);
-    report("equilateral", &positions, &triangles);
-    let (positions, triangles) = shuffle(&positions, &triangles, 2);
-    report("equilateral, shuffled", &positions, &triangles);
-}
-
-fn report(name: &str, positions: &[Vec3], triangles: &[[u32; 3]]) {
-    let Built { weave, chains, .. } = build(positions, triangles);
-    println!(
-        "{name}: {} particles, {} edges, {} of them along the threads",
-        positions.len(),
-        weave.ends.len(),
-        weave
-            .family
-            .iter()
-            .filter(|f| **f != EdgeFamily::Shear)
-            .count()
-    );
-    for pass in &chains.passes {
-        let batches = &chains.batches[pass.batches.clone()];
-        let all: Vec<usize> = batches
-            .iter()
-            .flat_map(|batch| lanes(&chains, batch))
-            .map(|lane| lane.len())
-            .filter(|length| *length > 0)
-            .collect();
-        let sum: usize = all.iter().sum();
-        let slots: usize = batches.iter().map(|batch| batch.slots.len()).sum();
-        println!(
-            "  {:?}: {} chains, {:.1} particles each, longest {:?}, {:.0} % of slots filled",
-            pass.family,
-            all.len(),
-            sum as f32 / all.len() as f32,
-            all.iter().max(),
-            100.0 * sum as f32 / slots as f32,
-        );
-    }
-}
-
-#[test]
-#[ignore = "prints the time"]
-fn time() {
-    let (positions, triangles) = grid(256, 256, [1.0, 1.0], |c, r| {
-        hash(c + 1000 * r, 1).is_multiple_of(2)
-    });
-    let (shuffled, cut) = shuffle(&positions, &triangles, 1);
-    let mut jittered = positions.clone();
-    for (i, p) in jittered.iter_mut().enumerate() {
-        p.x += 0.6 * (random(2 * i, 1) - 0.5);
-        p.y += 0.6 * (random(2 * i + 1, 1) - 0.5);
-    }
-    for (name, positions, triangles) in [
-        ("in order", &positions, &triangles),
-        ("shuffled", &shuffled, &cut),
-        ("jittered", &jittered, &triangles),
-    ]
-    .repeat(4)
-    {
-        let start = crate::wall_clock::WallClock::start();
-        let edges = MeshEdges::new(positions.len(), triangles);
-        let edges_at = start.elapsed();
-        let weave = Weave::new(positions, triangles, &edges, None);
-        let weave_at = start.elapsed();
-        let chains = Chains::build(positions, &weave);
-        println!(
-            "256² {name}: edges {edges_at:?}, with weave {weave_at:?}, with chains {:?}; {} passes",
-            start.elapsed(),
-            chains.0.passes.len()
-        );
-    }
 }

@@ -4,8 +4,8 @@ mod curved;
 mod sheet;
 
 use super::*;
+use crate::properties::*;
 use bevy_math::Vec2;
-use proptest::prelude::*;
 use sheet::{Sheet, Split};
 
 const OVER: f32 = 0.02;
@@ -259,31 +259,4 @@ fn anchors_lie_far_from_each_other() {
     let mut corners = tether_anchors(&all, &square, 4);
     corners.sort();
     assert_eq!(corners, [0, 8, 72, 80]);
-}
-
-#[test]
-#[ignore = "measures time: run with --release"]
-fn time_of_65536_particles() {
-    for (split, jitter) in [
-        (Split::Same, 0.0),
-        (Split::Alternating, 0.0),
-        (Split::Shorter, 0.3),
-    ] {
-        let sheet = Sheet::new(255, 255, split, jitter, 1, Vec2::ONE);
-        let positions = sheet.positions(flat);
-        let mut least = [f64::INFINITY; 2];
-        for _ in 0..10 {
-            let start = crate::wall_clock::WallClock::start();
-            let mesh = Geodesics::new(&positions, &sheet.triangles);
-            let built = start.elapsed();
-            let found = mesh.distances(&[0]);
-            let times = [built, start.elapsed() - built].map(|t| 1e3 * t.as_secs_f64());
-            least = [least[0].min(times[0]), least[1].min(times[1])];
-            assert!(found[65535] > 300.0);
-        }
-        println!(
-            "{split:?}: preparation {:.1} ms, distances {:.1} ms",
-            least[0], least[1]
-        );
-    }
 }

@@ -1,4 +1,4 @@
-use proptest::prelude::*;
+use crate::properties::*;
 
 use super::*;
 use crate::{
@@ -208,24 +208,4 @@ fn sheared_and_equilateral_cells_are_no_grid() {
     }
     assert_eq!(detect(&positions, &triangles), None);
     assert_eq!(detect(&[], &[]), None);
-}
-
-#[test]
-#[ignore = "prints the time"]
-fn time() {
-    let (positions, triangles) = grid(256, 256, [1.0, 1.0], |c, r| {
-        hash(c + 1000 * r, 1).is_multiple_of(2)
-    });
-    let (positions, triangles) = shuffle(&positions, &triangles, 1);
-    for _ in 0..5 {
-        let start = crate::wall_clock::WallClock::start();
-        let edges = MeshEdges::new(positions.len(), &triangles);
-        let built = start.elapsed();
-        let lattice = Recognized::detect(&positions, &triangles, &edges, None);
-        println!(
-            "256²: edges {built:?}, with lattice {:?}, {}",
-            start.elapsed(),
-            lattice.is_some()
-        );
-    }
 }

@@ -1,4 +1,4 @@
-use proptest::prelude::*;
+use crate::properties::*;
 
 use super::*;
 use crate::topology::test_meshes::{delaunay, grid, hash, random, shuffle};

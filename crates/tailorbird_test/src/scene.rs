@@ -1,37 +1,45 @@
-//! An app with one sheet (or several), made for tests. The sheet's frame is the world's: columns along +x, rows along −y.
+//! One sheet (or several alike), made for tests. Its frame is the world's: columns along +x, rows along −y.
 
-use std::time::Duration;
-
-use bevy_app::{App, TaskPoolOptions, TaskPoolPlugin};
-use bevy_ecs::prelude::*;
+use bevy_ecs::{component::Mutable, prelude::*};
 use bevy_math::{UVec2, Vec2, Vec3};
-use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use tailorbird_cloth::prelude::*;
 
-/// Standard gravity [m/s²].
-pub const G: f32 = 9.81;
+use crate::{
+    measure,
+    sim::{G, HZ, Sim},
+};
 
 /// Scene to simulate.
 #[derive(Clone, Debug)]
 pub struct Scene {
+    /// Width and height \[m\].
     pub size: Vec2,
+    /// Columns and rows.
     pub resolution: UVec2,
     /// In place of the grid of this size and resolution.
     pub cloth: Option<Cloth>,
+    /// Of each sheet.
     pub material: ClothMaterial,
+    /// Of each sheet.
     pub pins: ClothPins,
+    /// [m/s²].
     pub gravity: Vec3,
+    /// In the whole world.
     pub wind: ClothWind,
+    /// Number of substeps, by default what the resolution asks for.
     pub substeps: Option<u32>,
+    /// Of the kernels.
     pub instruction_set: ClothInstructionSet,
+    /// Steps in a second.
     pub hz: f64,
-    /// Middle and radius.
+    /// Middle and radius \[m\].
     pub sphere: Option<(Vec3, f32)>,
     /// Of the pool; a process has one, that of the first scene.
     pub threads: Option<usize>,
     /// Number of sheets, 3 m apart along x.
     pub sheets: u32,
+    /// Of each sheet.
     pub sleep: ClothSleep,
 }
 
@@ -48,7 +56,7 @@ impl Default for Scene {
             wind: ClothWind::vacuum(),
             substeps: None,
             instruction_set: ClothInstructionSet::Auto,
-            hz: 60.0,
+            hz: HZ,
             sphere: None,
             threads: None,
             sheets: 1,
@@ -86,9 +94,10 @@ pub fn rigid() -> ClothMaterial {
     }
 }
 
-/// An app whose updates are steps.
+/// A [`Sim`] whose updates are steps, and a sheet in it.
 pub struct Sheet {
-    pub app: App,
+    /// All that is not about the first sheet.
+    pub sim: Sim,
     /// The first sheet.
     pub entity: Entity,
     /// The sphere.
@@ -98,103 +107,86 @@ pub struct Sheet {
 impl Sheet {
     /// Built, and no time has passed.
     pub fn new(scene: &Scene) -> Self {
-        let mut app = App::new();
-        let mut pools = TaskPoolOptions::default();
-        if let Some(threads) = scene.threads {
-            pools.compute.min_threads = threads;
-            pools.compute.max_threads = threads;
-        }
-        app.add_plugins((
-            TaskPoolPlugin {
-                task_pool_options: pools,
-            },
-            TimePlugin,
-            ClothPlugin::default(),
-        ));
-        app.insert_resource(ClothSettings {
-            gravity: scene.gravity,
-            substeps: scene.substeps,
-            instruction_set: scene.instruction_set,
-            ..Default::default()
-        })
-        .insert_resource(scene.wind.clone());
+        let mut sim = Sim::with_threads(scene.threads).with_settings(|settings| {
+            settings.gravity = scene.gravity;
+            settings.substeps = scene.substeps;
+            settings.instruction_set = scene.instruction_set;
+        });
+        sim.app.insert_resource(scene.wind.clone());
+        sim.set_hz(scene.hz);
         let sphere = scene.sphere.map(|(center, radius)| {
             let at = Transform::from_translation(center);
-            app.world_mut()
-                .spawn((ClothCollider::sphere(radius), at))
-                .id()
+            sim.spawn((ClothCollider::sphere(radius), at))
         });
         let sheets: Vec<Entity> = (0..scene.sheets)
             .map(|k| {
                 let grid = || Cloth::grid(scene.size, scene.resolution).centered();
                 let cloth = scene.cloth.clone().unwrap_or_else(grid);
                 let at = Transform::from_xyz(3.0 * k as f32, 0.0, 0.0);
-                let bundle = (cloth, scene.material, scene.pins.clone(), scene.sleep, at);
-                app.world_mut().spawn(bundle).id()
+                sim.spawn((cloth, scene.material, scene.pins.clone(), scene.sleep, at))
             })
             .collect();
-        let mut sheet = Self {
-            app,
+        sim.build();
+        Self {
+            sim,
             entity: sheets[0],
             sphere,
-        };
-        sheet.set_hz(scene.hz);
-        sheet.app.finish();
-        sheet.app.cleanup();
-        // The clock stands still.
-        sheet
-            .app
-            .world_mut()
-            .run_schedule(bevy_app::FixedPostUpdate);
-        sheet.app.update();
-        sheet
-    }
-
-    /// Steps in a second from now on.
-    pub fn set_hz(&mut self, hz: f64) {
-        let fixed = Time::<Fixed>::from_hz(hz);
-        let timestep: Duration = fixed.timestep();
-        self.app
-            .insert_resource(fixed)
-            .insert_resource(TimeUpdateStrategy::ManualDuration(timestep));
-        let mut clock = self.app.world_mut().resource_mut::<Time<Virtual>>();
-        let most = clock.max_delta().max(timestep);
-        clock.set_max_delta(most);
-    }
-
-    pub fn step(&mut self) {
-        self.app.update();
-    }
-
-    pub fn steps(&mut self, count: u32) {
-        for _ in 0..count {
-            self.step();
         }
+    }
+
+    /// Simulates a step.
+    pub fn step(&mut self) {
+        self.steps(1);
+    }
+
+    /// Simulates so many steps.
+    pub fn steps(&mut self, count: u32) {
+        self.sim.steps(count);
     }
 
     /// A component of the first sheet.
     pub fn get<T: Component>(&self) -> &T {
-        self.app.world().get(self.entity).unwrap()
+        self.sim.get(self.entity)
+    }
+
+    /// Adds components to the first sheet.
+    pub fn insert(&mut self, bundle: impl Bundle) {
+        self.sim.insert(self.entity, bundle);
     }
 
     /// A component of the first sheet, to change.
-    pub fn change<T: Component<Mutability = bevy_ecs::component::Mutable>>(
-        &mut self,
-        change: impl FnOnce(&mut T),
-    ) {
-        change(&mut self.app.world_mut().get_mut::<T>(self.entity).unwrap());
+    pub fn change<T: Component<Mutability = Mutable>>(&mut self, change: impl FnOnce(&mut T)) {
+        self.sim.edit(self.entity, change);
     }
 
+    /// The settings, to change.
     pub fn settings(&mut self, change: impl FnOnce(&mut ClothSettings)) {
-        change(&mut self.app.world_mut().resource_mut::<ClothSettings>());
+        change(&mut self.sim.settings());
     }
 
+    /// The particles, in their frame.
     pub fn particles(&self) -> &ClothParticles {
         self.get()
     }
 
+    /// Places of all particles, in their frame.
+    pub fn positions(&self) -> Vec<Vec3> {
+        self.particles().positions().collect()
+    }
+
+    /// Places of all particles, in the world.
+    pub fn world_positions(&self) -> Vec<Vec3> {
+        self.sim.positions(self.entity)
+    }
+
+    /// The speed of the fastest particle [m/s].
+    pub fn fastest(&self) -> f32 {
+        self.sim.fastest(self.entity)
+    }
+
+    /// The length of a substep \[s\].
     pub fn substep_seconds(&self) -> f32 {
-        self.app.world().resource::<ClothStep>().substep_seconds()
+        self.sim.resource::<ClothStep>().substep_seconds()
     }
 
     /// Displacement of particles in the last step of 1/60 s, by its length, root of the mean square [m/s].
@@ -208,15 +200,21 @@ impl Sheet {
         60.0 * (sum / particles.len() as f64).sqrt()
     }
 
+    /// Stretch of all edges.
     pub fn stretch(&self) -> ClothStretch {
-        self.particles().stretch(self.get::<ClothTopology>())
+        self.sim.stretch(self.entity)
     }
 
-    /// Mass of all particles [kg].
+    /// Mass of all particles \[kg\].
     pub fn mass(&self) -> f64 {
         let particles = self.particles();
         let mass = |i| f64::from(particles.mass(i));
         (0..particles.len()).map(mass).sum()
+    }
+
+    /// Returns whether the first sheet sleeps.
+    pub fn is_asleep(&self) -> bool {
+        self.get::<ClothSleepState>().is_asleep()
     }
 
     /// Complaint about the first sheet, or about its place.
@@ -229,16 +227,9 @@ impl Sheet {
         Some(format!("particle {lost} is nowhere"))
     }
 
-    /// FNV-1a, 64 bits, over the bits of all coordinates of all sheets.
+    /// A hash over the bits of all particles of all sheets.
     pub fn hash(&mut self) -> u64 {
-        let mut query = self.app.world_mut().query::<&ClothParticles>();
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-        for particles in query.iter(self.app.world()) {
-            let coordinates = particles.positions().flat_map(|p| p.to_array());
-            for byte in coordinates.flat_map(|v| v.to_bits().to_le_bytes()) {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-            }
-        }
-        hash
+        let mut query = self.sim.app.world_mut().query::<&ClothParticles>();
+        measure::hash(query.iter(self.sim.app.world()))
     }
 }
