@@ -3,8 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::UVec2;
 use tailorbird_cloth::prelude::*;
-
-use crate::scene::{Scene, Sheet};
+use tailorbird_test::{Scene, Sheet};
 
 #[test]
 fn a_cloth_takes_its_own_number_of_substeps() {
@@ -13,7 +12,7 @@ fn a_cloth_takes_its_own_number_of_substeps() {
             substeps: of_all,
             ..Scene::hang(UVec2::splat(17))
         });
-        let world = sheet.app.world_mut();
+        let world = sheet.sim.app.world_mut();
         let cloth = world.query_filtered::<Entity, With<Cloth>>().single(world);
         if let Some(own) = own {
             let cloth = cloth.expect("one");

@@ -69,7 +69,7 @@ fn filmed(mut game: Sim, schedule: impl ScheduleLabel, fps: f64, hz: f64) -> Sim
     game.started()
 }
 
-/// What was seen since this was called last.
+/// Film since the last call.
 pub fn film(game: &mut Sim) -> Film {
     std::mem::take(&mut game.resource_mut::<Film>())
 }
