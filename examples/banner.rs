@@ -5,7 +5,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use bevy::{app::RunFixedMainLoopSystems, prelude::*};
+use bevy::{app::RunFixedMainLoopSystems::AfterFixedMainLoop, prelude::*};
 use tailorbird::prelude::*;
 
 #[derive(Component)]
@@ -21,20 +21,12 @@ fn main() {
                 strength: 0.5,
                 period: 2.5,
             },
-            turbulence: ClothTurbulence {
-                speed: 0.7,
-                scale: 0.9,
-                ..default()
-            },
             ..ClothWind::steady(WIND)
         })
         .add_systems(Startup, setup)
         .add_systems(Update, change_wind)
         .add_systems(FixedUpdate, sail)
-        .add_systems(
-            RunFixedMainLoop,
-            sail.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
-        )
+        .add_systems(RunFixedMainLoop, sail.in_set(AfterFixedMainLoop))
         .run();
 }
 
@@ -59,14 +51,10 @@ fn setup(
         Transform::from_xyz(0.0, 0.1, 0.0).with_scale(Vec3::new(1.7, 1.0, 0.6)),
         ChildOf(boat),
     ));
-    let mast = (0.035, 2.3, Transform::from_xyz(0.0, 1.3, -0.06));
-    let across = Quat::from_rotation_z(FRAC_PI_2);
-    let yard = (
-        0.022,
-        1.3,
-        Transform::from_xyz(0.0, 2.32, 0.0).with_rotation(across),
-    );
-    for (radius, length, place) in [mast, yard] {
+    let upright = Transform::from_xyz(0.0, 1.3, -0.06);
+    let across = Transform::from_xyz(0.0, 2.32, 0.0);
+    let across = across.with_rotation(Quat::from_rotation_z(FRAC_PI_2));
+    for (radius, length, place) in [(0.035, 2.3, upright), (0.022, 1.3, across)] {
         commands.spawn((
             ClothCollider::capsule(radius, length),
             Mesh3d(meshes.add(Capsule3d::new(radius, length))),
@@ -114,9 +102,8 @@ fn setup(
 
 /// Runs in each step, where cloth sees it, and once a frame: cloth is drawn between its last two steps, and so is the boat.
 fn sail(time: Res<Time>, step: Res<Time<Fixed>>, mut boat: Single<&mut Transform, With<Boat>>) {
-    let is_step = time.elapsed() == step.elapsed();
-    let length = step.timestep().as_secs_f32();
-    let late = if is_step { 0.0 } else { length };
+    let is_frame = time.elapsed() != step.elapsed();
+    let late = f32::from(is_frame) * step.timestep().as_secs_f32();
     let t = time.elapsed_secs() - late;
     let roll = Quat::from_rotation_x(0.18 * (1.3 * t).sin());
     let pitch = Quat::from_rotation_z(0.12 * (1.9 * t).sin());

@@ -3,7 +3,7 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use bevy::{app::RunFixedMainLoopSystems, prelude::*};
+use bevy::{app::RunFixedMainLoopSystems::AfterFixedMainLoop, prelude::*};
 use tailorbird::prelude::*;
 
 /// What moves: the whole figure, or what swings about a joint at a place [m] by a scaled axis [rad].
@@ -20,10 +20,7 @@ fn main() {
         .insert_resource(ClearColor(Color::srgb(0.62, 0.72, 0.82)))
         .add_systems(Startup, setup)
         .add_systems(FixedUpdate, walk)
-        .add_systems(
-            RunFixedMainLoop,
-            walk.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
-        )
+        .add_systems(RunFixedMainLoop, walk.in_set(AfterFixedMainLoop))
         .run();
 }
 
@@ -79,16 +76,14 @@ fn setup(
     ));
 
     commands.spawn((
-        ClothCollider::half_space(),
         Mesh3d(meshes.add(Plane3d::default().mesh().size(200.0, 200.0))),
         MeshMaterial3d(materials.add(Color::srgb(0.35, 0.38, 0.34))),
     ));
-    let sun = DirectionalLight {
-        shadow_maps_enabled: true,
-        ..default()
-    };
     commands.spawn((
-        sun,
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            ..default()
+        },
         Transform::from_xyz(-2.0, 4.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
     commands.spawn((
@@ -104,9 +99,8 @@ fn setup(
 /// Runs in each step, where cloth sees it, and once a frame: cloth is drawn between its last two steps, and so is the body, else
 /// the one would be seen to cut into the other.
 fn walk(time: Res<Time>, step: Res<Time<Fixed>>, mut joints: Query<(&Joint, &mut Transform)>) {
-    let is_step = time.elapsed() == step.elapsed();
-    let length = step.timestep().as_secs_f32();
-    let late = if is_step { 0.0 } else { length };
+    let is_frame = time.elapsed() != step.elapsed();
+    let late = f32::from(is_frame) * step.timestep().as_secs_f32();
     let t = (time.elapsed_secs() - late).max(0.0);
     // For 3.2 s on its way, with a hop; then half a turn. It looks along its z axis.
     let (way, t) = ((t / 4.0).floor(), t % 4.0);

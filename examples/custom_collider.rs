@@ -78,12 +78,7 @@ fn setup(
         ClothMaterial::cotton(),
         // A torus is no collider of the crate: nothing would wake the cloth when it turns.
         ClothSleep::never(),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: Color::srgb(0.15, 0.35, 0.65),
-            perceptual_roughness: 0.95,
-            reflectance: 0.2,
-            ..default()
-        })),
+        ClothLook::new(ClothFabric::COTTON).with_dye(Color::srgb(0.15, 0.35, 0.65)),
         Transform::from_xyz(0.0, 1.2, 0.0)
             .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)),
     ));

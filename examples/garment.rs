@@ -5,7 +5,7 @@
 
 use std::f32::consts::TAU;
 
-use bevy::{app::RunFixedMainLoopSystems, gltf::GltfPlugin, prelude::*};
+use bevy::{app::RunFixedMainLoopSystems::AfterFixedMainLoop, gltf::GltfPlugin, prelude::*};
 use tailorbird::{
     fabric::{Texels, with_mipmaps},
     prelude::*,
@@ -28,10 +28,7 @@ fn main() {
         .add_systems(Startup, setup)
         .add_systems(Update, add_mipmaps)
         .add_systems(FixedUpdate, turn)
-        .add_systems(
-            RunFixedMainLoop,
-            turn.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
-        )
+        .add_systems(RunFixedMainLoop, turn.in_set(AfterFixedMainLoop))
         .run();
 }
 
@@ -91,9 +88,8 @@ fn setup(
 
 /// Runs in each step, where cloth sees it, and once a frame: cloth is drawn between its last two steps, and so is the figure.
 fn turn(time: Res<Time>, step: Res<Time<Fixed>>, mut figure: Single<&mut Transform, With<Figure>>) {
-    let is_step = time.elapsed() == step.elapsed();
-    let length = step.timestep().as_secs_f32();
-    let late = if is_step { 0.0 } else { length };
+    let is_frame = time.elapsed() != step.elapsed();
+    let late = f32::from(is_frame) * step.timestep().as_secs_f32();
     let t = (time.elapsed_secs() - late).max(0.0);
     // It begins slowly.
     let swing = (0.25 * t).min(1.0) * (TAU * t / 3.0).sin();
@@ -111,12 +107,8 @@ fn add_mipmaps(
         if let AssetEvent::LoadedWithDependencies { id } = *event
             && let Some(image) = images.get(id).cloned()
         {
-            let is_color = image.texture_descriptor.format.is_srgb();
-            let texels = if is_color {
-                Texels::Color
-            } else {
-                Texels::Value
-            };
+            let srgb = image.texture_descriptor.format.is_srgb();
+            let texels = if srgb { Texels::Color } else { Texels::Value };
             images.insert(id, with_mipmaps(image, texels))?;
             // They keep what they had bound until they change themselves.
             materials.iter_mut().for_each(drop);

@@ -12,10 +12,6 @@ use tailorbird::prelude::*;
 #[derive(Component)]
 struct Leg(f32);
 
-#[derive(Component)]
-#[require(Transform, Visibility)]
-struct Figure;
-
 fn main() {
     App::new()
         .add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin))
@@ -61,7 +57,15 @@ fn setup(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     let wood = MeshMaterial3d(materials.add(Color::srgb(0.74, 0.64, 0.50)));
-    let figure = commands.spawn(Figure).id();
+    let trunk = Mesh3d(meshes.add(Capsule3d::new(0.13, 0.35)));
+    let trunk = (trunk, wood.clone(), Transform::from_xyz(0.0, 0.12, 0.0));
+    // Hangs from the hip, which is its origin.
+    let leg = Capsule3d::new(0.07, 0.75).mesh().build();
+    let leg = Mesh3d(meshes.add(leg.translated_by(-0.45 * Vec3::Y)));
+    let leg = |side| {
+        let hip = Transform::from_xyz(0.08 * side, -0.05, 0.0);
+        (Leg(side), leg.clone(), wood.clone(), hip)
+    };
     let skirt = skirt();
     commands.spawn((
         limits(&skirt),
@@ -70,18 +74,8 @@ fn setup(
         ClothMaterial::cotton(),
         MeshMaterial3d(materials.add(Color::srgb(0.10, 0.42, 0.42))),
         Transform::from_xyz(0.0, 1.0, 0.0),
-        ChildOf(figure),
+        children![trunk, leg(-1.0), leg(1.0)],
     ));
-    commands.spawn((
-        Mesh3d(meshes.add(Capsule3d::new(0.13, 0.35))),
-        wood.clone(),
-        Transform::from_xyz(0.0, 1.12, 0.0),
-        ChildOf(figure),
-    ));
-    let leg = Mesh3d(meshes.add(Capsule3d::new(0.07, 0.75)));
-    for side in [-1.0, 1.0] {
-        commands.spawn((Leg(side), leg.clone(), wood.clone(), ChildOf(figure)));
-    }
 
     commands.spawn((
         Mesh3d(meshes.add(Plane3d::default().mesh().size(200.0, 200.0))),
@@ -104,23 +98,19 @@ fn setup(
     ));
 }
 
-/// Swings the legs, and each particle's target with the leg on its side.
+/// Turns all, swings the legs, and each particle's target with the leg on its side.
 fn walk(
     time: Res<Time>,
-    mut figure: Single<&mut Transform, With<Figure>>,
-    mut legs: Query<(&Leg, &mut Transform), Without<Figure>>,
-    mut skirt: Single<(&Cloth, &mut ClothMotionTargets)>,
+    mut skirt: Single<(&Cloth, &mut ClothMotionTargets, &mut Transform)>,
+    mut legs: Query<(&Leg, &mut Transform), Without<Cloth>>,
 ) {
     let t = time.elapsed_secs();
-    figure.rotation = Quat::from_rotation_y(1.2 * (0.9 * t).sin());
+    let (cloth, targets, place) = &mut *skirt;
+    place.rotation = Quat::from_rotation_y(1.2 * (0.9 * t).sin());
     let swing = 0.35 * (TAU * 0.8 * t).sin();
     for (leg, mut transform) in &mut legs {
-        // About the hip.
-        let turn = Quat::from_rotation_x(swing * leg.0);
-        let place = Vec3::new(0.08 * leg.0, 0.95, 0.0) + turn * Vec3::new(0.0, -0.45, 0.0);
-        *transform = Transform::from_translation(place).with_rotation(turn);
+        transform.rotation = Quat::from_rotation_x(swing * leg.0);
     }
-    let (cloth, targets) = &mut *skirt;
     let rest = cloth.rest_positions();
     targets.set_positions(rest.into_iter().map(|place| {
         let side = (place.x / 0.15).clamp(-1.0, 1.0);

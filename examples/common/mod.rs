@@ -25,7 +25,6 @@ pub mod panel;
 pub mod photo;
 pub mod plot;
 pub mod props;
-pub mod saved;
 pub mod scene_assets;
 pub mod scene_list;
 pub mod scenes;

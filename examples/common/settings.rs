@@ -1,23 +1,33 @@
 //! Everything that the panel, the keys and the scripts change, as plain data. [`apply`](super::apply) carries it over
-//! to the world.
+//! to the world, [`settings_file`](super::settings_file) to a file and back.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use tailorbird::prelude::*;
 
-use super::scenes::SceneKind;
+use super::{scenes::SceneKind, settings_file as file};
+
+/// The name of a preset. An alias, or serde would want to borrow it from the file.
+pub type PresetName = &'static str;
 
 /// Everything that a player can set.
-#[derive(Resource, Clone, Debug, PartialEq)]
+#[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct DemoSettings {
     /// Which scene is shown.
+    #[serde(
+        serialize_with = "file::write_scene",
+        deserialize_with = "file::read_scene"
+    )]
     pub scene: SceneKind,
     /// How often the scene was started anew. A change starts it again.
+    #[serde(skip)]
     pub resets: u32,
     /// Particles along the longer side of the cloth.
     pub resolution: u32,
     /// The name of the preset that was chosen last.
-    pub preset: &'static str,
+    #[serde(rename = "fabric", deserialize_with = "file::read_preset")]
+    pub preset: PresetName,
     /// What the cloth is made of.
     pub material: ClothMaterial,
     /// How the cloth is shaded.
@@ -27,12 +37,14 @@ pub struct DemoSettings {
     /// How the constraints are solved.
     pub solver: ClothSolver,
     /// Substeps of a step, where they are not chosen automatically.
+    #[serde(with = "file::Substeps")]
     pub substeps: Option<u32>,
     /// Iterations of a substep.
     pub iterations: u32,
     /// Whether time stands still.
     pub paused: bool,
     /// How often a single step was asked for. A change does as many steps.
+    #[serde(skip)]
     pub single_steps: u32,
     /// The air.
     pub wind: ClothWind,
@@ -45,8 +57,10 @@ pub struct DemoSettings {
     /// What is drawn.
     pub look: Look,
     /// How the cloth under the pointer is found.
+    #[serde(with = "file::Picking")]
     pub picking: ClothPickingBackend,
     /// Whether a second cloth hangs beside the first, held by the other solver. Goes with the scene.
+    #[serde(skip)]
     pub beside: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Settings saved to a RON file, and loaded from one.
 
 use std::{
-    fmt, fs,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -10,10 +10,15 @@ use ron::{
     extensions::Extensions,
     ser::PrettyConfig,
 };
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{Error as _, IgnoredAny, Unexpected},
+};
+use tailorbird::prelude::*;
 
 use super::{
-    saved::{NotAllowed, SavedSettings},
-    settings::DemoSettings,
+    scenes::SceneKind,
+    settings::{DemoSettings, Look, PresetName},
 };
 
 /// The file, unless the command line names another.
@@ -23,9 +28,10 @@ pub const FILE: &str = "tailorbird.ron";
 const LARGEST: u64 = 1 << 20;
 
 /// Why settings were not saved or loaded.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsFileError {
     /// The file cannot be read.
+    #[error("{} cannot be read: {reason}", .file.display())]
     Read {
         /// Which one.
         file: PathBuf,
@@ -33,6 +39,7 @@ pub enum SettingsFileError {
         reason: String,
     },
     /// The file cannot be written.
+    #[error("{} cannot be written: {reason}", .file.display())]
     Write {
         /// Which one.
         file: PathBuf,
@@ -40,12 +47,13 @@ pub enum SettingsFileError {
         reason: String,
     },
     /// What is in the file is not allowed there.
+    #[error("{}, line {line}: {field} {problem}, must be {allowed}", .file.display())]
     Content {
         /// Which one.
         file: PathBuf,
         /// Where, from 1 on.
         line: usize,
-        /// The field, with a point between each field and the one within; empty where there is none.
+        /// The field, with a point between each field and the one within.
         field: String,
         /// What is wrong with it.
         problem: String,
@@ -53,32 +61,6 @@ pub enum SettingsFileError {
         allowed: String,
     },
 }
-
-impl fmt::Display for SettingsFileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read { file, reason } => {
-                write!(f, "{} cannot be read: {reason}", file.display())
-            }
-            Self::Write { file, reason } => {
-                write!(f, "{} cannot be written: {reason}", file.display())
-            }
-            Self::Content {
-                file,
-                line,
-                field,
-                problem,
-                allowed,
-            } => {
-                write!(f, "{}, line {line}: ", file.display())?;
-                let space = if field.is_empty() { "" } else { " " };
-                write!(f, "{field}{space}{problem}, must be {allowed}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for SettingsFileError {}
 
 /// Saves settings; replaces what is in the file.
 ///
@@ -120,100 +102,198 @@ fn options() -> ron::Options {
 /// Where RON cannot say it.
 pub fn to_text(settings: &DemoSettings) -> Result<String, ron::Error> {
     let config = PrettyConfig::new().struct_names(false);
-    let mut text = options().to_string_pretty(&SavedSettings::from(settings), config)?;
+    let mut text = options().to_string_pretty(settings, config)?;
     text.push('\n');
     Ok(text)
 }
 
-/// Settings from text; `file` is named in errors.
+/// Settings from text; `file` is named in errors. What is left out is as the scene brings it.
 ///
 /// # Errors
 /// When something in it is not allowed.
 pub fn from_text(text: &str, file: &Path) -> Result<DemoSettings, SettingsFileError> {
-    let saved: SavedSettings = options()
-        .from_str(text)
-        .map_err(|error| describe(&error, text, file))?;
-    saved
-        .check()
-        .map_err(|wrong: NotAllowed| SettingsFileError::Content {
+    let describe = |error| describe(&error, text, file);
+    let mut settings: DemoSettings = options().from_str(text).map_err(describe)?;
+    let given: Given = options().from_str(text).map_err(describe)?;
+    let mut scene = DemoSettings::of(settings.scene);
+    if given.fabric.is_some() {
+        scene.choose_preset(settings.preset);
+    }
+    settings.preset = scene.preset;
+    if given.material.is_none() {
+        settings.material = scene.material;
+    }
+    if given.wind.is_none() {
+        settings.wind = scene.wind;
+    }
+    if given.sphere_radius.is_none() {
+        settings.sphere_radius = scene.sphere_radius;
+    }
+    match not_allowed(&settings) {
+        None => Ok(settings),
+        Some((field, value, allowed)) => Err(SettingsFileError::Content {
             file: file.into(),
-            line: line_of(&wrong.field, text),
-            problem: format!("is {}", wrong.value),
-            field: wrong.field,
-            allowed: wrong.allowed,
-        })
+            line: line_of(&field, text),
+            problem: format!("is {value}"),
+            field,
+            allowed,
+        }),
+    }
+}
+
+/// What else a scene brings, and whether it is in a file.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Given {
+    fabric: Option<IgnoredAny>,
+    material: Option<IgnoredAny>,
+    wind: Option<IgnoredAny>,
+    sphere_radius: Option<IgnoredAny>,
+}
+
+/// Substeps in a file: as many as the cloth needs, or so many.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Option<u32>")]
+pub enum Substeps {
+    /// As many as the cloth needs.
+    #[serde(rename = "Automatic")]
+    None,
+    /// So many.
+    #[serde(rename = "Fixed")]
+    Some(u32),
+}
+
+/// [`ClothPickingBackend`] in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "ClothPickingBackend")]
+#[allow(missing_docs, reason = "as there")]
+pub enum Picking {
+    Ray,
+    Depth,
+}
+
+/// Writes the name of a scene.
+pub fn write_scene<S: Serializer>(scene: &SceneKind, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(scene.name())
+}
+
+/// Reads the name of a scene.
+pub fn read_scene<'de, D: Deserializer<'de>>(from: D) -> Result<SceneKind, D::Error> {
+    choose(from, &SceneKind::ALL.map(|scene| (scene.name(), scene)))
+}
+
+/// Reads the name of a preset.
+pub fn read_preset<'de, D: Deserializer<'de>>(from: D) -> Result<PresetName, D::Error> {
+    let presets = ClothMaterial::presets();
+    choose(from, &presets.map(|(name, _)| (name, name)))
+}
+
+/// Reads a name, and finds what is called so.
+fn choose<'de, D: Deserializer<'de>, T: Copy>(
+    from: D,
+    all: &[(&'static str, T)],
+) -> Result<T, D::Error> {
+    let name = String::deserialize(from)?;
+    let found = all.iter().find(|(known, _)| *known == name);
+    found.map(|(_, it)| *it).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|(name, _)| *name).collect();
+        let allowed = format!("one of {}", names.join(", "));
+        D::Error::invalid_value(Unexpected::Str(&name), &allowed.as_str())
+    })
+}
+
+/// The first value that is not allowed: its field, itself, and what is allowed, with the unit.
+fn not_allowed(settings: &DemoSettings) -> Option<(String, String, String)> {
+    let s = settings;
+    let passes = ClothSettings::MOST_PASSES as f32;
+    let substeps = s.substeps.unwrap_or(1) as f32;
+    for (field, value, range, unit) in [
+        ("resolution", s.resolution as f32, 2.0..=512.0, ""),
+        ("substeps", substeps, 1.0..=passes, ""),
+        ("iterations", s.iterations as f32, 0.0..=passes, ""),
+        ("gravity", s.gravity, 0.0..=100.0, " m/s²"),
+        ("sphere_radius", s.sphere_radius, 0.01..=2.0, " m"),
+        ("sphere_speed", s.sphere_speed, 0.0..=100.0, " m/s"),
+        ("grab_radius", s.grab_radius, 0.0..=1.0, " m"),
+        ("look.f_number", s.look.f_number, Look::F_NUMBERS, ""),
+    ] {
+        if !range.contains(&value) {
+            let allowed = format!("{} to {}{unit}", range.start(), range.end());
+            return Some((field.into(), value.to_string(), allowed));
+        }
+    }
+    let material = s.material.errors().into_iter();
+    let wind = s.wind.errors().into_iter();
+    let (kind, of, called) = material
+        .map(|kind| (kind, "ClothMaterial", "material"))
+        .chain(wind.map(|kind| (kind, "ClothWind", "wind")))
+        .next()?;
+    let rename = |field: String| field.replacen(of, called, 1);
+    Some(match kind {
+        ClothErrorKind::Value {
+            field,
+            value,
+            allowed,
+        } => (rename(field), value.to_string(), allowed),
+        ClothErrorKind::Vector { field, value } => {
+            (rename(field), value.to_string(), "finite".into())
+        }
+        other => (
+            called.into(),
+            other.to_string(),
+            "what the plugin takes".into(),
+        ),
+    })
 }
 
 /// What RON does not understand.
 fn describe(error: &SpannedError, text: &str, file: &Path) -> SettingsFileError {
-    let mut line = error.span.start.line;
-    let (field, problem, allowed) = match &error.code {
+    let one_of = |names: &[&str]| format!("one of {}", names.join(", "));
+    let here = error.span.start.line;
+    let (last, at) = field_before(error, text);
+    let (field, line, problem, allowed) = match &error.code {
         Ron::NoSuchStructField {
             expected, found, ..
-        } => {
-            let known = expected.join(", ");
-            (
-                found.clone(),
-                "is unknown".into(),
-                format!("one of {known}"),
-            )
-        }
+        } => (found.as_str(), here, "is unknown".into(), one_of(expected)),
         Ron::NoSuchEnumVariant {
             expected, found, ..
-        } => {
-            let known = expected.join(", ");
-            let (field, at) = field_before(error, text);
-            line = at;
-            (field, format!("is {found}"), format!("one of {known}"))
+        } => (last, at, format!("is {found}"), one_of(expected)),
+        Ron::InvalidValueForType { expected, found } => {
+            (last, at, format!("is {found}"), expected.clone())
         }
-        Ron::MissingStructField { field, .. } => (
-            (*field).into(),
-            "is missing".into(),
-            "there with its neighbours".into(),
-        ),
-        Ron::DuplicateStructField { field, .. } => (
-            (*field).into(),
-            "is there twice".into(),
-            "there once".into(),
-        ),
-        Ron::Eof => (
-            String::new(),
-            "the file ends too early".into(),
-            "closed by as many ) as it has (".into(),
-        ),
+        Ron::DuplicateStructField { field, .. } => {
+            (*field, here, "is there twice".into(), "there once".into())
+        }
+        Ron::Eof => {
+            let allowed = "closed by as many ) as it has (".into();
+            ("the file", here, "ends too early".into(), allowed)
+        }
         Ron::ExpectedStructLikeEnd | Ron::ExpectedComma => {
-            let (field, at) = field_before(error, text);
-            line = at;
             let allowed = "one value of its kind, then a comma or )".into();
-            (field, "does not end as it should".into(), allowed)
+            (last, at, "does not end as it should".into(), allowed)
         }
         code => {
-            let (field, at) = field_before(error, text);
-            line = at;
             let wanted = code.to_string();
             let wanted = wanted.strip_prefix("Expected ").unwrap_or(&wanted);
-            (field, "is of another kind".into(), wanted.to_owned())
+            (last, at, "is of another kind".into(), wanted.into())
         }
     };
     SettingsFileError::Content {
         file: file.into(),
         line,
-        field,
+        field: field.into(),
         problem,
         allowed,
     }
 }
 
-/// The last field that is named before the place of an error, and its line.
-fn field_before(error: &SpannedError, text: &str) -> (String, usize) {
-    let end = error.span.end;
-    let mut last = (String::new(), error.span.start.line);
-    for (name, line, column) in names(text) {
-        if (line, column) < (end.line, end.col) {
-            last = (name, line);
-        }
-    }
-    last
+/// The last field that is named before the place of an error, and its line; the file where there is none.
+fn field_before<'a>(error: &SpannedError, text: &'a str) -> (&'a str, usize) {
+    let (start, end) = (error.span.start, error.span.end);
+    names(text)
+        .take_while(|(_, line, column)| (*line, *column) < (end.line, end.col))
+        .last()
+        .map_or(("the file", start.line), |(name, line, _)| (name, line))
 }
 
 /// The line of a field, or of the innermost one around it that is there.
@@ -222,7 +302,7 @@ fn line_of(field: &str, text: &str) -> usize {
     let mut names = names(text);
     for part in field.split('.') {
         // Of a vector, its parts have no names.
-        let Some((_, line, _)) = names.find(|(name, ..)| name == part) else {
+        let Some((_, line, _)) = names.find(|(name, ..)| *name == part) else {
             break;
         };
         found = line;
@@ -231,27 +311,15 @@ fn line_of(field: &str, text: &str) -> usize {
 }
 
 /// The names before colons, each with its line and column from 1 on. What is in comments does not count.
-fn names(text: &str) -> impl Iterator<Item = (String, usize, usize)> + '_ {
+fn names(text: &str) -> impl Iterator<Item = (&str, usize, usize)> {
     text.lines().enumerate().flat_map(|(line, text)| {
         let code = text.split("//").next().unwrap_or("");
-        let mut start = 0;
-        let mut found = Vec::new();
-        for (at, _) in code.match_indices(':') {
-            let before = code[start..at].trim_end();
+        code.match_indices(':').filter_map(move |(colon, _)| {
+            let before = code[..colon].trim_end();
             let is_part = |c: char| c.is_alphanumeric() || c == '_';
-            let length: usize = before
-                .chars()
-                .rev()
-                .take_while(|c| is_part(*c))
-                .map(char::len_utf8)
-                .sum();
-            let name = &before[before.len() - length..];
-            if !name.is_empty() {
-                let column = 1 + code[..start + before.len() - length].chars().count();
-                found.push((name.to_owned(), line + 1, column));
-            }
-            start = at + 1;
-        }
-        found
+            let name = before.rsplit(|c| !is_part(c)).next()?;
+            let column = 1 + before[..before.len() - name.len()].chars().count();
+            (!name.is_empty()).then_some((name, line + 1, column))
+        })
     })
 }

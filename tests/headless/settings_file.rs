@@ -2,6 +2,7 @@
 
 use std::{fs, path::Path};
 
+use bevy::prelude::default;
 use proptest::prelude::*;
 use tailorbird::prelude::*;
 
@@ -254,9 +255,61 @@ fn fields_within_others_are_found() {
         assert_eq!((line, named.as_str()), (at + 1, field), "{words}");
         assert!(words.contains("finite"), "{words}");
     }
-    let (_, field, words) = wrong("(\n material: (\n  damping: 1.0,\n ),\n)");
-    assert_eq!(field, "areal_density");
-    assert!(words.contains("missing"), "{words}");
+}
+
+#[test]
+fn a_part_of_a_material_leaves_the_rest_of_it_at_its_default() {
+    let settings = read("(material: (damping: 1.0), wind: (air_density: 1.0))").expect("settings");
+    let material = ClothMaterial {
+        damping: 1.0,
+        ..default()
+    };
+    let wind = ClothWind {
+        air_density: 1.0,
+        ..default()
+    };
+    assert_eq!((settings.material, settings.wind), (material, wind));
+}
+
+#[test]
+fn a_fabric_brings_its_material() {
+    let settings = read("(scene: \"flag\", fabric: \"denim\")").expect("settings");
+    assert_eq!(settings.preset, "denim");
+    assert_eq!(settings.material, ClothMaterial::denim());
+}
+
+/// As version 0.2 of the demo wrote it.
+#[test]
+fn files_of_earlier_versions_are_read() {
+    let settings = read(
+        r#"(
+    scene: "flag", resolution: 64, fabric: "silk",
+    material: (
+        areal_density: 0.07, warp_compliance: 6.25e-5, weft_compliance: 0.000125, shear_compliance: 0.06,
+        bend_compliance: 330000.0, viscosity: 0.05, damping: 0.3, friction: 0.2, thickness: 0.003, drag: 1.2, lift: 1.1,
+    ),
+    shading: Flat, gravity: 1.6, solver: GaussSeidel, substeps: Fixed(12), iterations: 2, paused: true,
+    wind: (
+        velocity: (7.0, 0.0, 1.0), gusts: (strength: 0.4, period: 3.0),
+        turbulence: (speed: 1.2, scale: 1.5, seed: 7), model: Classic, air_density: 1.2,
+    ),
+    sphere_radius: 0.2, sphere_speed: 1.0, grab_radius: 0.05,
+    look: (texture: false, wireframe: true), picking: Depth,
+)"#,
+    )
+    .expect("settings");
+    assert_eq!(settings.scene, SceneKind::Flag);
+    assert_eq!((settings.resolution, settings.substeps), (64, Some(12)));
+    assert_eq!(
+        (settings.material.lift, settings.wind.turbulence.seed),
+        (1.1, 7)
+    );
+    assert_eq!(settings.wind.model, ClothWindModel::Classic);
+    assert_eq!(settings.solver, ClothSolver::GaussSeidel);
+    assert_eq!(settings.picking, ClothPickingBackend::Depth);
+    assert!(settings.look.wireframe && !settings.look.texture);
+    let automatic = read("(substeps: Automatic)").expect("settings");
+    assert_eq!(automatic.substeps, None);
 }
 
 #[test]

@@ -75,7 +75,10 @@
 
 mod apply;
 mod collect;
-mod shape;
+/// Parry's shapes as shapes that cloth collides with.
+mod shape {
+    tailorbird_bridge::convert_parry!(avian3d::parry);
+}
 
 use avian3d::prelude::*;
 use bevy_app::{App, FixedPostUpdate, Plugin};

@@ -8,15 +8,19 @@
 
 mod load;
 mod near;
+mod parry;
 mod pose;
 mod shapes;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+#[doc(no_inline)]
+pub use tailorbird_cloth::collider::ClothColliderShape;
 
 pub use self::{
     load::{ClothLoad, SleepLimits},
     near::{ClothBoxes, WorldBox},
+    parry::ShapePart,
     pose::{TrackedPose, moved},
     shapes::{Piece, ShapeCache},
 };

@@ -6,6 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Mat3, Vec3};
 use bevy_rapier3d::{
     geometry::RapierColliderHandle,
+    parry::math::Pose,
     plugin::context::{RapierContextColliders, RapierContextEntityLink, RapierRigidBodySet},
     rapier::{
         dynamics::RigidBody,
@@ -17,7 +18,7 @@ use tailorbird_bridge::{
 };
 use tailorbird_cloth::prelude::*;
 
-use crate::shape::{self, isometry};
+use crate::shape;
 
 /// Pose of a collider in the world, with the present pose of its body.
 pub(crate) fn pose(collider: &Collider, bodies: &RapierRigidBodySet) -> Isometry3d {
@@ -26,6 +27,10 @@ pub(crate) fn pose(collider: &Collider, bodies: &RapierRigidBodySet) -> Isometry
         (Some(body), Some(to)) => isometry(body.position()) * isometry(to),
         _ => isometry(collider.position()),
     }
+}
+
+fn isometry(pose: &Pose) -> Isometry3d {
+    Isometry3d::new(pose.translation, pose.rotation)
 }
 
 /// 1/mass along the axes of the world [1/kg], and the inverse inertia in world axes [1/(kg m²)]; 0 along and about

@@ -78,7 +78,10 @@
 
 mod apply;
 mod collect;
-mod shape;
+/// Parry's shapes as shapes that cloth collides with.
+mod shape {
+    tailorbird_bridge::convert_parry!(bevy_rapier3d::parry);
+}
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::{
