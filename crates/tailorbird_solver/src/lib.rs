@@ -54,6 +54,7 @@ pub mod reaction;
 pub mod shape;
 #[doc(hidden)]
 pub mod solve;
+mod split;
 #[doc(hidden)]
 pub mod step;
 #[doc(hidden)]

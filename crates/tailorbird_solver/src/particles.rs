@@ -15,7 +15,7 @@ use crate::{
     memory::heap,
     numbers::Numbers,
     points::Points,
-    topology::{Topology, copies::ParticleCopy, order::ParticleOrder},
+    topology::{Topology, order::ParticleOrder},
 };
 
 /// The particles of one cloth, as parallel arrays in storage order, in the cloth's frame.
@@ -137,40 +137,6 @@ impl Particles {
             },
             ..Self::default()
         }
-    }
-
-    /// Adds particles that are split off others: they are where those are and as fast, free, and take their part of the mass. The next
-    /// step needs a topology [with the same copies](Topology::with_copies).
-    ///
-    /// # Panics
-    /// When one is a copy of a particle that does not exist.
-    pub fn append(&mut self, copies: &[ParticleCopy]) {
-        for copy in copies {
-            let (of, len) = (copy.of as usize, self.len());
-            let State {
-                position,
-                previous_position,
-                lost_displacement,
-                step_position,
-                ..
-            } = &mut self.state;
-            for points in [
-                position,
-                previous_position,
-                lost_displacement,
-                step_position,
-            ] {
-                let place = points.get(of);
-                points.resize(len + 1, 0.0);
-                points.set(len, place);
-            }
-            let mass = copy.part * self.input.mass[of];
-            self.input.mass[of] -= mass;
-            self.input.mass.push(mass);
-            self.input.inv_mass.resize(len + 1, 0.0);
-        }
-        self.input.acceleration.clear();
-        self.update_inv_masses();
     }
 
     /// The number of particles.
