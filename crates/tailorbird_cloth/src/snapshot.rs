@@ -1,4 +1,4 @@
-//! Snapshots: going back to an earlier step, for rollback and for saved games.
+//! Snapshots: going back to an earlier step, for rollback.
 
 use bevy_ecs::{component::Mutable, prelude::*};
 
@@ -36,6 +36,11 @@ macro_rules! snapshot {
         /// Between steps: taken from a system that runs before [`ClothSystems::Prepare`] or after [`ClothSystems::Writeback`]. It takes as
         /// much memory as the cloths do ([`ClothParticles`] has some 60 bytes a particle); [`take_into`](Self::take_into) uses that of
         /// an older snapshot again.
+        ///
+        /// Not held, as others write it too: [`ClothSettings`](crate::settings::ClothSettings) (a single step counts down in it),
+        /// attachments that broke meanwhile and are despawned (spawn them again before), colliders that a physics engine has given for the step
+        /// already, and `TrackedPose` and `ClothLoad` of the bridges to physics engines, which are to be rolled back with its bodies.
+        /// Restore between frames, not within a step of the fixed loop.
         ///
         /// Entities are told by their ids, so a snapshot is good for the world that it was taken from, and for another one that spawned the
         /// same entities in the same order. A cloth that is gone is left out; one that was spawned since stays as it is: despawn it.
@@ -135,6 +140,8 @@ fn restore_values<C: Component<Mutability = Mutable> + Clone>(
     for (entity, value) in values {
         if let Some(mut current) = world.get_mut::<C>(*entity) {
             current.clone_from(value);
+        } else if let Ok(mut entity) = world.get_entity_mut(*entity) {
+            entity.insert(value.clone());
         }
     }
 }
