@@ -107,3 +107,50 @@ fn interleaved<S: Simd, V: SimdBase<S>, const N: usize>(mut tile: [V; N]) -> [V;
     }
     tile
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::dispatch;
+
+    use super::*;
+    use crate::kernels::lanes::levels;
+
+    /// Rows of a sheet as columns of a block, and the same rows of a sheet of which nothing else is known.
+    #[inline(always)]
+    fn there_and_back<S: Simd>(simd: S, rows: usize, columns: usize) {
+        let n = S::f32s::LEN;
+        let rows = rows.min(n);
+        let tile = Tile {
+            sheet_offset: 2 * columns,
+            rows,
+            columns,
+        };
+        let mut sheet: Vec<f32> = (0..(rows + 3) * columns).map(|i| i as f32).collect();
+        let mut block = vec![-1.0; columns * n];
+        let mut back = vec![-1.0; sheet.len()];
+        tile.load(simd, Shared::new(&mut sheet), Shared::new(&mut block));
+        for (i, is) in block.iter().enumerate() {
+            let (column, row) = (i / n, i % n);
+            let wanted = if row < rows {
+                sheet[(row + 2) * columns + column]
+            } else {
+                0.0
+            };
+            assert_eq!(*is, wanted);
+        }
+        tile.store(simd, Shared::new(&mut block), Shared::new(&mut back));
+        for (i, is) in back.into_iter().enumerate() {
+            let here = (2..rows + 2).contains(&(i / columns));
+            assert_eq!(is, if here { sheet[i] } else { -1.0 });
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_and_rows_again() {
+        for level in levels() {
+            for (rows, columns) in (1..=WIDEST).flat_map(|rows| (1..40).map(move |c| (rows, c))) {
+                dispatch!(level, simd => there_and_back(simd, rows, columns));
+            }
+        }
+    }
+}
