@@ -201,8 +201,8 @@ fn turbulence_is_as_fast_as_it_is_told_and_without_divergence() {
         );
     }
     let rms = f32::sqrt(squares / count);
-    assert!((rms / 2.0 - 1.0).abs() < 0.05, "{rms} m/s");
-    assert!(sum.length() / count < 0.1, "{}", sum / count);
+    assert!((rms / 2.0 - 1.0).abs() < 0.005, "{rms} m/s");
+    assert!(sum.length() / count < 0.003, "{}", sum / count);
 }
 
 #[test]
@@ -222,7 +222,7 @@ fn turbulence_depends_on_time_and_seed_alone_and_is_smooth() {
         air(&sheet, Vec3::new(0.3, 0.2, 0.1))
     };
     let slow = wind(60.0, 1);
-    assert!(slow.distance(wind(120.0, 1)) < 0.02);
+    assert!(slow.distance(wind(120.0, 1)) < 1e-4);
     assert_eq!(slow, wind(60.0, 1));
     assert!(slow.distance(wind(60.0, 2)) > 0.1);
 
@@ -357,8 +357,8 @@ proptest! {
         sheet.steps(40);
         let particles = sheet.particles();
         prop_assert!(particles.positions().all(Vec3::is_finite));
-        // All waves at their crests, and room for what the sheet itself flings.
-        let most = 2.0 * (mean + 6.0 * speed) + 0.1;
+        // All waves at their crests.
+        let most = mean + 6.0 * speed + 0.1;
         let fastest = (0..particles.len()).map(|i| particles.velocity(i).length()).fold(0.0, f32::max);
         prop_assert!(fastest < most, "{fastest} of {most}");
     }

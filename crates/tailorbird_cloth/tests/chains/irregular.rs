@@ -82,7 +82,7 @@ fn a_shuffled_sheet_moves_as_the_grid_that_it_is() {
     let moved = a.particles().position(SIDE * (SIDE - 1)).z.abs();
     assert!(moved > 1e-3, "{moved} m");
     let [x, y] = [a.stretch(), b.stretch()];
-    assert!((x.mean - y.mean).abs() < 1e-5, "{x:?} {y:?}");
+    assert!((x.mean - y.mean).abs() < 3e-7, "{x:?} {y:?}");
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn irregular() -> Cloth {
 }
 
 #[test]
-fn an_irregular_sheet_hangs_without_stretching() {
+fn an_irregular_sheet_hangs_and_hardly_stretches() {
     let mut sheet = sheet(irregular(), upper_corners());
     assert!(sheet.get::<ClothTopology>().fabric().is_some());
     push(&mut sheet, |p| p.y < -0.9);
@@ -145,7 +145,7 @@ fn an_irregular_sheet_hangs_without_stretching() {
     }
     let end = sheet.stretch();
     assert!(
-        end.mean < 0.005 && end.p99 < 0.03,
+        end.mean < 0.003 && end.p99 < 0.018,
         "{end:?}, worst {worst:?}"
     );
     let lowest = sheet
@@ -153,9 +153,9 @@ fn an_irregular_sheet_hangs_without_stretching() {
         .positions()
         .map(|p| p.y)
         .fold(0.0, f32::min);
-    assert!((-1.2..-0.8).contains(&lowest), "{lowest} m");
+    assert!((-1.0..-0.95).contains(&lowest), "{lowest} m");
     let energy = sheet.particles().kinetic_energy();
-    assert!(energy < 0.2, "{energy} J");
+    assert!(energy < 6e-4, "{energy} J");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn viscosity_keeps_the_momentum_of_a_free_mesh() {
     let after = sheet.particles().momentum();
     assert!(before.z > 1e-3);
     assert!(
-        after.distance(before) < 0.01 * before.length(),
+        after.distance(before) < 2e-4 * before.length(),
         "{before} {after}"
     );
 }
@@ -226,6 +226,6 @@ fn a_rolled_sheet_keeps_its_shape_in_free_flight() {
     sheet.steps(60);
     for (i, p) in positions.iter().enumerate() {
         let moved = sheet.particles().position(i).distance(*p);
-        assert!(moved < 1e-3, "{i}: {moved} m");
+        assert!(moved < 1e-6, "{i}: {moved} m");
     }
 }

@@ -54,9 +54,9 @@ fn strain(cloth: Cloth, tension: f32, material: ClothMaterial, substeps: u32) ->
 
 /// Threads that do not stretch, at ±45° to a load σ, turn by σ/(2 G), and the strip gets longer by half of that.
 #[test]
-fn a_strip_cut_on_the_bias_gives_way_by_its_shear() {
+fn a_strip_cut_on_the_bias_gives_way_by_its_shear_and_up_to_a_third_more() {
     let (length, width, spacing) = (0.8, 0.2, 0.02);
-    // A substep takes up to σ L²/(2 h²), here 6.9 and 27.6 N/m. The springs of a mesh are softer than that says by up to a half.
+    // A substep takes up to σ L²/(2 h²), here 6.9 and 27.6 N/m. The springs of a mesh are softer than that says by a quarter.
     for (stiffness, substeps) in [(4.0, 8), (12.0, 16)] {
         let material = ClothMaterial {
             shear_compliance: 1.0 / stiffness,
@@ -77,8 +77,8 @@ fn a_strip_cut_on_the_bias_gives_way_by_its_shear() {
         println!(
             "G = {stiffness} N/m: bias {bias:.5}, not {expected:.5}; along the warp {along:.6}"
         );
-        assert!((0.75..1.75).contains(&(bias / expected)), "{bias}");
-        assert!(bias > 10.0 * along, "{along}");
+        assert!((1.0..1.33).contains(&(bias / expected)), "{bias}");
+        assert!(bias > 500.0 * along, "{along}");
     }
 }
 
@@ -124,7 +124,7 @@ fn folds(values: &[f32], least: f32) -> (usize, f32) {
 
 /// Number of folds of a sheet: a matter of chance within some, so that the means over several places of the sphere agree.
 #[test]
-fn folds_do_not_depend_on_how_the_sheet_is_cut() {
+fn folds_are_as_deep_and_almost_as_many_however_the_sheet_is_cut() {
     let n = 48;
     let size = Vec2::splat(2.0);
     let drape = |cloth: Cloth, k: f32| {
@@ -155,13 +155,13 @@ fn folds_do_not_depend_on_how_the_sheet_is_cut() {
     let irregular = mean(&|k| drape(irregular(size, [n, n], 0, u64::from(k)), k as f32));
     println!("grid {grid}, irregular {irregular}");
     assert!(grid.x >= 8.0, "{grid}");
-    let ratio = irregular / grid;
-    assert!((ratio - 1.0).abs().max_element() < 0.25, "{ratio}");
+    let [count, depth] = (irregular / grid - 1.0).abs().to_array();
+    assert!(count < 0.22 && depth < 0.1, "{count}, {depth}");
 }
 
 /// Hinges of cells cut at random droop by 10 to 20 % more than a continuum.
 #[test]
-fn an_irregular_strip_droops_as_the_elastica() {
+fn an_irregular_strip_droops_as_the_elastica_and_up_to_a_quarter_more() {
     let (columns, rows, length) = (5, 9, 0.5);
     let spacing = length / (rows - 1) as f32;
     let free = spacing * (rows as f32 - 1.5);
@@ -190,7 +190,7 @@ fn an_irregular_strip_droops_as_the_elastica() {
             let depth: f32 = last.map(|i| -particles.position(i).z).sum();
             let droop = depth / columns as f32 / free;
             println!("{weight}, seed {seed}: {droop:.4}, not {expected:.4}");
-            assert!((droop / expected - 1.0).abs() < 0.25, "{droop}");
+            assert!((1.0..1.25).contains(&(droop / expected)), "{droop}");
         }
     }
 }

@@ -23,10 +23,13 @@ fn worst(sheet: &mut Sheet, steps: u32, mut before: impl FnMut(&mut Sheet, u32))
     worst
 }
 
-/// Checks the mean and the 99 % against bounds.
-fn check(what: &str, is: ClothStretch, mean: f32, p99: f32) {
+/// Checks the mean, the 99 % and the largest against bounds.
+fn check(what: &str, is: ClothStretch, [mean, p99, max]: [f32; 3]) {
     println!("{what}: {is:?}");
-    assert!(is.mean <= mean && is.p99 <= p99, "{what}: {is:?}");
+    assert!(
+        is.mean <= mean && is.p99 <= p99 && is.max <= max,
+        "{what}: {is:?}"
+    );
 }
 
 #[test]
@@ -35,14 +38,14 @@ fn a_hanging_sheet_hardly_stretches() {
     let falling = worst(&mut sheet, 225, |_, _| ());
     println!("hang, falling: {falling:?}");
     let hanging = worst(&mut sheet, 75, |_, _| ());
-    check("hang, last quarter", hanging, 1e-3, 1e-2);
+    check("hang, last quarter", hanging, [6e-5, 8e-4, 7e-3]);
 }
 
 /// Substeps for forces of many times the weight: transverse waves then outrun the eight substeps of a quiet sheet of this size.
 const BUSY: Option<u32> = Some(16);
 
 #[test]
-fn a_sheet_in_a_storm_hardly_stretches() {
+fn a_sheet_in_a_storm_hardly_stretches_but_for_single_edges() {
     // 20 m/s.
     let mut sheet = Sheet::new(&Scene {
         pins: ClothPins::edges([ClothEdge::Left]),
@@ -52,7 +55,7 @@ fn a_sheet_in_a_storm_hardly_stretches() {
         ..Scene::hang(SIZE)
     });
     let worst = worst(&mut sheet, 300, |_, _| ());
-    check("storm", worst, 6e-3, 0.2);
+    check("storm", worst, [1.3e-3, 0.02, 0.35]);
 }
 
 /// More while it blows, as many as before afterwards, and no more where the budget is 0.
@@ -86,7 +89,7 @@ fn substeps_follow_a_storm() {
 }
 
 #[test]
-fn a_sheet_that_is_dragged_quickly_hardly_stretches() {
+fn a_sheet_that_is_dragged_quickly_stretches_at_few_edges() {
     let mut sheet = Sheet::new(&Scene {
         gravity: Vec3::NEG_Y * G,
         substeps: BUSY,
@@ -101,12 +104,12 @@ fn a_sheet_that_is_dragged_quickly_hardly_stretches() {
             held.pins = pins.map(|(i, at)| ClothPin::at(i, at + aside)).to_vec();
         });
     };
-    check("drag", worst(&mut sheet, 180, drag), 1e-2, 0.2);
+    check("drag", worst(&mut sheet, 180, drag), [6.5e-3, 0.12, 1.0]);
 }
 
 #[test]
-fn a_sheet_that_falls_on_a_sphere_hardly_stretches() {
+fn a_sheet_that_falls_on_a_sphere_hardly_stretches_but_for_single_edges() {
     let mut sheet = Sheet::new(&Scene::drape(SIZE));
     let worst = worst(&mut sheet, 300, |_, _| ());
-    check("drape", worst, 1.2e-2, 0.13);
+    check("drape", worst, [1.9e-3, 0.023, 0.18]);
 }

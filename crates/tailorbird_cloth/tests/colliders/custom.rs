@@ -66,7 +66,7 @@ fn a_sheet_that_falls_on_a_torus_stays_out_of_it_and_comes_to_rest() {
         let now = sheet.world_positions();
         for p in &now {
             let depth = torus(*p).depth;
-            assert!(depth < 2e-3, "{depth} m deep at {p} in step {step}");
+            assert!(depth < 5e-6, "{depth} m deep at {p} in step {step}");
         }
         before = now;
     }
@@ -74,14 +74,14 @@ fn a_sheet_that_falls_on_a_torus_stays_out_of_it_and_comes_to_rest() {
     let now = sheet.world_positions();
     let moved = now.iter().zip(&before).map(|(a, b)| a.distance(*b));
     let fastest = 60.0 * moved.fold(0.0, f32::max);
-    assert!(fastest < 0.1, "{fastest} m/s");
+    assert!(fastest < 1.5e-4, "{fastest} m/s");
     let touching = now.iter().filter(|p| torus(**p).depth > -0.01).count();
     assert!(touching > 50, "{touching} particles touch it");
     // It sags into the hole and hangs over the outside.
     let lowest = now.iter().map(|p| p.z + BELOW).fold(f32::MAX, f32::min);
-    assert!((-0.6..0.0).contains(&lowest), "{lowest} m");
+    assert!((-0.5..-0.4).contains(&lowest), "{lowest} m");
     let middle = now[33 * 16 + 16].z + BELOW;
-    assert!((-0.1..0.2).contains(&middle), "{middle} m");
+    assert!((0.1..0.2).contains(&middle), "{middle} m");
 }
 
 /// A block that slides on a slope of a game's own stops where tan of its angle is below the friction, as on a half-space of this crate.
@@ -123,7 +123,7 @@ fn friction_is_that_of_the_crates_own_solids() {
         "{smooth} of {free} m"
     );
     let rough = slides(slope::<36>);
-    assert!(rough < 0.02, "{rough} m");
+    assert!(rough < 1e-4, "{rough} m");
 }
 
 /// A moving surface takes along the cloth that lies on it.
@@ -150,7 +150,7 @@ fn a_surface_that_moves_takes_cloth_along() {
     sheet.steps(60);
     for (from, to) in start.iter().zip(sheet.world_positions()) {
         let way = to - *from;
-        assert!((way.x - SPEED).abs() < 0.02 && way.y.abs() < 0.01, "{way}");
+        assert!((way.x - SPEED).abs() < 1e-4 && way.y.abs() < 1e-4, "{way}");
     }
 }
 
@@ -214,6 +214,6 @@ fn both_places_moved_alike_change_no_velocity() {
     assert!(particles.position(0).x > -0.5 + 0.05);
     for i in 0..particles.len() {
         let speed = particles.velocity(i).length();
-        assert!(speed < 1e-3, "{speed} m/s");
+        assert!(speed < 1.2e-5, "{speed} m/s");
     }
 }

@@ -43,9 +43,8 @@ fn lands_on(case: &Case, rotation: Quat, speed: f32, steps: u32) {
         for p in around(&sheet, at) {
             assert!(p.is_finite(), "{name}: {p} in step {step}");
             let distance = (case.distance)(p);
-            // The last stages of a substep may push one back by a little.
             assert!(
-                distance > -0.002,
+                distance > 0.002,
                 "{name}: {distance} in step {step}, at {p}"
             );
             touched |= distance < 2.0 * thickness;
@@ -130,9 +129,9 @@ fn terrain_carries_a_sheet_and_a_margin_lifts_it() {
         let above = points.iter().map(|p| p.y - height(p.x, p.z));
         let lowest = above.clone().fold(f32::MAX, f32::min);
         let mean = above.sum::<f32>() / points.len() as f32;
-        assert!(lowest > 0.7 * margin - 0.005, "{margin}: {lowest}");
+        assert!(lowest > margin + 0.002, "{margin}: {lowest}");
         let wanted = margin + thickness;
-        assert!(mean < wanted + 0.06, "{margin}: {mean} above on average");
+        assert!(mean < wanted + 0.0015, "{margin}: {mean} above on average");
     }
 }
 
@@ -151,10 +150,10 @@ fn layers_keep_apart_what_does_not_want_to_meet() {
         let points = around(&sheet, Transform::IDENTITY);
         points.iter().map(|p| p.z).fold(f32::MAX, f32::min)
     };
-    assert!(bottom(ClothLayers::ALL, ClothLayers::ALL) > -0.21);
-    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(2, 1)) > -0.21);
-    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(4, 1)) < -1.0);
-    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(2, 4)) < -1.0);
+    assert!(bottom(ClothLayers::ALL, ClothLayers::ALL) > -0.1951);
+    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(2, 1)) > -0.1951);
+    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(4, 1)) < -4.0);
+    assert!(bottom(ClothLayers::new(1, 2), ClothLayers::new(2, 4)) < -4.0);
 }
 
 #[test]
@@ -169,7 +168,7 @@ fn scale_counts_along_the_axes_of_a_box_and_of_points() {
         sheet.sim.app.world_mut().spawn((collider, at));
         sheet.steps(90);
         for p in around(&sheet, Transform::IDENTITY) {
-            assert!((p.z - (-0.3 + thickness)).abs() < 0.01, "{p}");
+            assert!((p.z - (-0.3 + thickness)).abs() < 1e-5, "{p}");
         }
     }
 }

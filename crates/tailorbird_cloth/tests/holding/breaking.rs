@@ -45,13 +45,13 @@ fn it_breaks_at_its_break_force_whatever_substeps_and_resolution() {
     for (side, substeps) in [(9, 6), (9, 16), (24, 8), (24, 16)] {
         let weight = weight_at_break(side, substeps, 1.0, true);
         assert!(
-            (weight - 1.0).abs() < 0.05,
+            (weight - 1.0).abs() < 0.003,
             "{side}, {substeps} substeps: {weight} N"
         );
     }
     // One particle carries all of it.
     let weight = weight_at_break(16, 8, 1.0, false);
-    assert!((weight - 1.0).abs() < 0.05, "corner: {weight} N");
+    assert!((weight - 1.0).abs() < 0.003, "corner: {weight} N");
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn below_its_break_force_it_is_as_good_as_rigid() {
         for i in 0..17 {
             let place = Vec3::new(i as f32 / 16.0 - 0.5, 0.5, 0.0);
             let gap = world.at(cloth, i).distance(place);
-            assert!(gap < 10.0 * ClothAttachment::GIVE, "{gap} m");
+            assert!(gap < 0.2 * ClothAttachment::GIVE, "{gap} m");
         }
     }
 }
@@ -106,6 +106,6 @@ fn what_is_left_hangs_on() {
     assert!(!world.exists(weak));
     assert!(world.at(cloth, 0).distance(Vec3::new(-0.5, 0.5, 0.0)) < 1e-6);
     assert!(world.mass(cloth) * G > 0.1);
-    assert!(world.stretch(cloth).max < 0.05);
-    assert!(world.fastest(cloth) < 20.0);
+    assert!(world.stretch(cloth).max < 1e-4);
+    assert!(world.fastest(cloth) < 4.0);
 }

@@ -77,7 +77,7 @@ fn a_backstop_holds_a_sheet_that_falls_on_it_and_lets_it_rest() {
         if step % 300 == 299 {
             let energy = world.particles(cloth).kinetic_energy();
             assert!(
-                energy < 1e-4 && energy <= before + 1e-6,
+                energy < 1e-9 && energy <= before + 1e-12,
                 "{step}: {energy} J"
             );
             before = energy;

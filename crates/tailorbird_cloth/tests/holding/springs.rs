@@ -34,19 +34,19 @@ fn a_spring_gives_way_by_compliance_times_weight_whatever_the_resolution() {
         let edge: f32 = (0..side as usize).map(|i| 0.5 - world.at(cloth, i).y).sum();
         let mean = edge / side as f32;
         assert!(
-            (mean - compliance * weight).abs() < 0.03 * compliance * weight,
+            (mean - compliance * weight).abs() < 0.006 * compliance * weight,
             "{side}: {mean}"
         );
         let carried = world.get::<ClothAttachmentForce>(attachment).force;
         assert!(
-            (carried + Vec3::Y * weight).length() < 0.01 * weight,
+            (carried + Vec3::Y * weight).length() < 0.007 * weight,
             "{carried} {weight}"
         );
     }
 }
 
 #[test]
-fn springs_add_no_stretch() {
+fn springs_add_hardly_any_stretch() {
     let held = |compliance| {
         let held = ClothAttachment::edge(ClothEdge::Top).with_compliance(compliance);
         let (world, cloth, _) = hanging(held, 24);
@@ -55,7 +55,7 @@ fn springs_add_no_stretch() {
     let rigid = held(0.0);
     for compliance in [1e-6, 1e-3, 0.1] {
         let soft = held(compliance);
-        assert!(soft < 2.0 * rigid + 1e-3, "{compliance}: {soft} {rigid}");
+        assert!(soft < rigid + 5e-4, "{compliance}: {soft} {rigid}");
     }
 }
 
@@ -83,11 +83,8 @@ fn a_spring_swings_at_its_natural_frequency() {
         }
     }
     // Implicit integration damps it.
-    assert!((0.12..0.201).contains(&furthest.1), "{furthest:?}");
-    assert!(
-        furthest.0.abs_diff(half) <= 1 + half / 20,
-        "{furthest:?} {half}"
-    );
+    assert!((0.13..0.16).contains(&furthest.1), "{furthest:?}");
+    assert!(furthest.0.abs_diff(half) <= 1, "{furthest:?} {half}");
 }
 
 #[test]
@@ -105,7 +102,7 @@ fn a_soft_hold_follows_softly() {
     let expected = turned.transform_point(Vec3::new(-0.5, 0.5, 0.0));
     assert!(world.at(cloth, 0).distance(expected) > 0.05);
     world.steps(400);
-    assert!(world.at(cloth, 0).distance(expected) < 1e-3);
+    assert!(world.at(cloth, 0).distance(expected) < 2.2e-4);
 }
 
 #[test]
@@ -138,7 +135,7 @@ fn pins_carry_the_weight_of_the_sheet() {
         }
         let weight = Vec3::NEG_Y * (world.mass(cloth) * G);
         let error = mean.distance(weight) / weight.length();
-        assert!(error < 0.02, "{solver:?}: {mean} {weight}");
+        assert!(error < 0.001, "{solver:?}: {mean} {weight}");
     }
 }
 
@@ -159,9 +156,9 @@ fn springs_and_pins_share_the_weight() {
     let spring = world.get::<ClothAttachmentForce>(attachment).force;
     let weight = world.mass(cloth) * G;
     assert!(
-        (pin + spring + Vec3::Y * weight).length() < 0.02 * weight,
+        (pin + spring + Vec3::Y * weight).length() < 0.001 * weight,
         "{pin} {spring}"
     );
-    assert!((pin.y - spring.y).abs() < 0.05 * weight, "{pin} {spring}");
+    assert!((pin.y - spring.y).abs() < 0.009 * weight, "{pin} {spring}");
     assert!(pin.x > 0.0 && spring.x < 0.0, "{pin} {spring}");
 }

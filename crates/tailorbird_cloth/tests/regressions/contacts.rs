@@ -79,8 +79,8 @@ fn velocity_growing_without_end_on_a_resting_contact() {
             speeds.fold(0.0, f64::max)
         });
         println!("{name}: {peaks:.5?} m/s");
-        assert!(peaks[0] < 0.1, "{name}: {peaks:?}");
-        assert!(peaks[3] <= 1.5 * peaks[0].max(0.002), "{name}: {peaks:?}");
+        assert!(peaks[0] < 2e-5, "{name}: {peaks:?}");
+        assert!(peaks[3] <= 1.5 * peaks[0].max(1e-5), "{name}: {peaks:?}");
     }
 }
 
@@ -183,7 +183,7 @@ fn a_fixed_contact_buffer_overflowing_silently() {
     sheet.steps(60);
     let surface = -0.05 + rigid().thickness;
     for (i, p) in sheet.particles().positions().enumerate() {
-        assert!((p.z - surface).abs() < 1e-3, "particle {i} at {p}");
+        assert!((p.z - surface).abs() < 1e-5, "particle {i} at {p}");
     }
 }
 
@@ -217,14 +217,9 @@ fn a_force_given_per_body_applied_per_vertex() {
         // In one second.
         let weight = sheet.mass() as f32 * G;
         let sum = carried.iter().sum::<f32>();
-        assert!((sum / weight - 1.0).abs() < 0.05, "{sum} N of {weight} N");
+        assert!((sum / weight - 1.0).abs() < 5e-4, "{sum} N of {weight} N");
         let nothing = carried.iter().filter(|carried| **carried <= 0.0).count();
-        // A sheet that hardly stretches need not lie on all of them.
-        let count = balls.len();
-        assert!(
-            nothing <= count / 50,
-            "{nothing} of {count} balls carry nothing"
-        );
+        assert_eq!(nothing, 0, "of {} balls carry nothing", balls.len());
     }
 }
 
