@@ -122,9 +122,8 @@ impl Sheet {
     ///
     /// # Panics
     /// When the sheet does not have it; [`Cloth`] brings all that are asked for.
-    #[expect(clippy::expect_used, reason = "Cloth requires them")]
     pub fn get<C: Component>(&self) -> &C {
-        self.app.world().get(self.entity).expect("part of a cloth")
+        self.app.world().entity(self.entity).components::<&C>()
     }
 
     /// Particles in a row.

@@ -138,7 +138,7 @@ fn an_attachment_without_its_relationships_says_so() {
 fn motion_constraints_that_are_wrong_are_named_and_the_last_valid_ones_hold() {
     let wrong: [(&str, fn(&mut ClothMotionConstraints)); 5] = [
         ("max_distance", |c| {
-            c.max_distance = ClothPerParticle::All(-1.0)
+            c.max_distance = ClothPerParticle::All(-1.0);
         }),
         ("max_distance[3]", |c| {
             let mut values = vec![0.1; 25];

@@ -48,6 +48,3 @@ pub fn happen(description: &Description) -> Film {
     }
     sim.app.world_mut().remove_resource::<Film>().unwrap()
 }
-
-/// For the meshes of the example `headless`.
-pub use tailorbird_test::unit;

@@ -94,7 +94,8 @@ fn arrange(topology: &mut Topology, edges: &MeshEdges, uvs: Option<&[[Vec2; 3]]>
         weave.renumber(&inverse(&order));
         reorder(topology, order);
         let (rest, triangles) = (&topology.rest_positions, &topology.triangles);
-        topology.layout = Layout::Mesh(Fabric::new(rest, triangles, chains, &weave));
+        let fabric = Fabric::new(rest, triangles, chains, &weave);
+        topology.layout = Layout::Mesh(Box::new(fabric));
     }
     if !(topology.flat && topology.lattice().is_some()) {
         topology.hinges = HingeConstraints::new(&topology.triangles, &topology.rest_positions);

@@ -13,7 +13,7 @@ pub enum Layout {
     /// not flat at rest.
     Sheet(SheetLayout),
     /// Anywhere, joined by chains along warp and weft, and by shear.
-    Mesh(Fabric),
+    Mesh(Box<Fabric>),
 }
 
 /// Columns and rows of particles.
@@ -37,7 +37,7 @@ impl From<Lattice> for SheetLayout {
 impl Default for Layout {
     /// A mesh without particles.
     fn default() -> Self {
-        Self::Mesh(Fabric::default())
+        Self::Mesh(Box::default())
     }
 }
 
