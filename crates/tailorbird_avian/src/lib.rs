@@ -87,7 +87,6 @@ use bevy_ecs::{
     schedule::{IntoScheduleConfigs, ScheduleLabel},
 };
 use bevy_transform::TransformSystems;
-use tailorbird_bridge::TrackedPose;
 pub use tailorbird_bridge::{ClothBridgeSystems, ClothCollisionDisabled, ClothLoad, TrackedPose};
 use tailorbird_cloth::prelude::*;
 

@@ -90,7 +90,6 @@ use bevy_ecs::{
 };
 use bevy_rapier3d::{dynamics::RigidBody, geometry::Collider, plugin::PhysicsSet};
 use bevy_transform::TransformSystems;
-use tailorbird_bridge::TrackedPose;
 pub use tailorbird_bridge::{ClothBridgeSystems, ClothCollisionDisabled, ClothLoad, TrackedPose};
 use tailorbird_cloth::prelude::*;
 
