@@ -13,7 +13,7 @@ use proptest::test_runner::{TestCaseResult, TestRunner};
 macro_rules! for_all {
     (
         #![proptest_config($config:expr)]
-        $($(#[$meta:meta])* fn $name:ident($($parm:pat in $strategy:expr),+ $(,)?) $body:block)*
+        $($(#[$meta:meta])* fn $name:ident($($pattern:pat in $strategy:expr),+ $(,)?) $body:block)*
     ) => {$(
         $(#[$meta])*
         fn $name() {
@@ -23,19 +23,19 @@ macro_rules! for_all {
                     source_file: Some(file!()),
                     ..::proptest::test_runner::contextualize_config($config)
                 },
-                stringify!($($parm),+),
+                stringify!($($pattern),+),
                 ::proptest::proptest_helper!(@_WRAP ($($strategy)*)),
-                |::proptest::proptest_helper!(@_WRAPPAT ($($parm),*))| {
+                |::proptest::proptest_helper!(@_WRAPPAT ($($pattern),*))| {
                     let (): () = $body;
                     Ok(())
                 },
             );
         }
     )*};
-    ($($(#[$meta:meta])* fn $name:ident($($parm:pat in $strategy:expr),+ $(,)?) $body:block)*) => {
+    ($($(#[$meta:meta])* fn $name:ident($($pattern:pat in $strategy:expr),+ $(,)?) $body:block)*) => {
         $crate::properties::proptest! {
             #![proptest_config(::proptest::test_runner::Config::default())]
-            $($(#[$meta])* fn $name($($parm in $strategy),+) $body)*
+            $($(#[$meta])* fn $name($($pattern in $strategy),+) $body)*
         }
     };
 }
