@@ -31,6 +31,7 @@ pub struct ClothNormals {
     #[reflect(ignore)]
     previous: Points,
     shading: ClothShading,
+    #[reflect(ignore)]
     revision: u64,
 }
 

@@ -297,6 +297,7 @@ pub struct ClothAttachmentState {
     /// Number of particles of that topology.
     particles: usize,
     /// Revision of the topology.
+    #[reflect(ignore)]
     revision: u64,
     /// True if the particles are still to be found.
     stale: bool,

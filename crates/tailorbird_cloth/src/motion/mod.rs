@@ -313,6 +313,7 @@ pub struct ClothMotionState {
     /// True if a step was left out.
     idle: bool,
     /// Revision of the topology.
+    #[reflect(ignore)]
     revision: u64,
 }
 
