@@ -21,6 +21,12 @@ fn main() {
                 strength: 0.5,
                 period: 2.5,
             },
+            // In air without eddies it would stay as plain as a board.
+            turbulence: ClothTurbulence {
+                speed: 0.7,
+                scale: 0.9,
+                ..default()
+            },
             ..ClothWind::steady(WIND)
         })
         .add_systems(Startup, setup)
@@ -73,14 +79,9 @@ fn setup(
         ChildOf(boat),
     ));
 
-    let sea = StandardMaterial {
-        base_color: Color::srgb(0.10, 0.24, 0.30),
-        perceptual_roughness: 0.25,
-        ..default()
-    };
     commands.spawn((
         Mesh3d(meshes.add(Plane3d::default().mesh().size(200.0, 200.0))),
-        MeshMaterial3d(materials.add(sea)),
+        MeshMaterial3d(materials.add(Color::srgb(0.10, 0.24, 0.30))),
     ));
     let sun = DirectionalLight {
         shadow_maps_enabled: true,
