@@ -321,6 +321,35 @@ fn a_scaled_cloth_is_drawn_at_its_size_once() {
     assert!((particle(&app, cloth, 0)).distance(Vec3::new(-2.0, 2.0, 0.0)) < 1e-5);
 }
 
+/// Also where it is at a step of the same number as before.
+#[test]
+fn a_cloth_that_went_back_is_drawn_where_it_is() {
+    let mut app = game();
+    let cloth = curtain(&mut app, 9);
+    frames(&mut app, 10);
+    let saved = ClothSnapshot::take(app.world_mut());
+    let drawn_right = |app: &App| {
+        let particles = get::<ClothParticles>(app, cloth);
+        let fixed = app.world().resource::<Time<Fixed>>().overstep_fraction();
+        let places = positions(app, cloth).into_iter().enumerate();
+        places
+            .map(|(i, p)| p.distance(particles.interpolated(i, fixed)))
+            .fold(0.0, f32::max)
+    };
+    let second = f64::from(10.0 / HERTZ as f32);
+    pass(&mut app, second);
+    let (before, steps) = (
+        positions(&app, cloth)[40],
+        app.world().resource::<ClothStep>().steps(),
+    );
+    saved.restore(app.world_mut());
+    app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::Y * 30.0;
+    pass(&mut app, second);
+    assert_eq!(app.world().resource::<ClothStep>().steps(), steps);
+    assert!(positions(&app, cloth)[40].distance(before) > 0.01);
+    assert!(drawn_right(&app) < 1e-5, "{}", drawn_right(&app));
+}
+
 #[test]
 fn a_vertex_that_is_bound_to_a_triangle_is_drawn_on_it() {
     let mut app = game();
@@ -329,7 +358,9 @@ fn a_vertex_that_is_bound_to_a_triangle_is_drawn_on_it() {
     let (corners, weights) = ([0, 1, 9], [0.5, 0.3, 0.2]);
     let bind = |app: &mut App, binding| {
         let mut mesh = app.world_mut().get_mut::<ClothMesh>(cloth).expect("built");
-        assert!(mesh.parts_mut()[0].bind(40, binding));
+        let part = &mut mesh.parts_mut()[0];
+        assert!(!part.bind(40, ClothVertexBinding::Particle(81)) && !part.bind(81, binding));
+        assert!(part.bind(40, binding));
     };
     let mean = |places: &[Vec3]| -> Vec3 {
         let each = corners.iter().zip(weights);

@@ -396,3 +396,25 @@ fn a_sheared_cloth_says_so_and_a_rounded_right_angle_is_none() {
     frames(&mut app, 3);
     assert!(get::<ClothStatus>(&app, sheared).is_ok());
 }
+
+#[test]
+fn a_mesh_without_texture_coordinates_gives_none() {
+    let mut app = game();
+    for (strip, count) in [(false, 25), (true, 0)] {
+        let mut plain = square(5);
+        if strip {
+            plain.remove_attribute(Mesh::ATTRIBUTE_UV_0);
+            plain.remove_attribute(Mesh::ATTRIBUTE_TANGENT);
+        }
+        let mesh = add(&mut app, plain);
+        let cloth = made(&mut app, mesh, ClothFromMesh::default());
+        let ClothShape::Mesh { uvs, .. } = &get::<Cloth>(&app, cloth).shape else {
+            panic!("a mesh");
+        };
+        assert_eq!(uvs.len(), count);
+        assert_eq!(
+            get::<Cloth>(&app, cloth),
+            &get::<Cloth>(&app, cloth).clone()
+        );
+    }
+}

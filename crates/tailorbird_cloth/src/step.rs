@@ -33,6 +33,8 @@ pub struct ClothStep {
     pub(crate) granted_substeps: f32,
     pub(crate) elapsed: f64,
     pub(crate) steps: u64,
+    /// Number of times that a snapshot was restored: steps of one number may differ.
+    pub(crate) restores: u64,
     pub(crate) running: bool,
     pub(crate) parallel: bool,
     pub(crate) whole: bool,
@@ -106,6 +108,12 @@ impl ClothStep {
     /// Number of steps that have begun.
     pub fn steps(&self) -> u64 {
         self.steps
+    }
+
+    /// Number of times that a [`ClothSnapshot`](crate::snapshot::ClothSnapshot) was restored: a step of the same [number](Self::steps) may be
+    /// another one after it.
+    pub fn restores(&self) -> u64 {
+        self.restores
     }
 
     /// Returns whether this tick simulates: not paused, and time passes.

@@ -18,6 +18,21 @@ pub enum ClothVertexBinding {
     },
 }
 
+impl ClothVertexBinding {
+    /// Returns whether it names a point among so many particles.
+    pub(super) fn is_among(&self, particles: u32) -> bool {
+        /// Of the sum of the weights, by rounding.
+        const MOST_OFF: f32 = 1e-4;
+        match *self {
+            Self::Particle(particle) => particle < particles,
+            Self::Triangle { corners, weights } => {
+                let off = (weights.iter().sum::<f32>() - 1.0).abs();
+                corners.iter().all(|corner| *corner < particles) && off <= MOST_OFF
+            }
+        }
+    }
+}
+
 /// Bindings of the vertices of a mesh: most to particles, one each; the others are listed.
 #[derive(Debug, Default)]
 pub(super) struct Bindings {
@@ -116,6 +131,17 @@ impl Bindings {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_binding_names_particles_that_are_there_and_a_point_of_their_triangle() {
+        let on = |corners, weights| ClothVertexBinding::Triangle { corners, weights };
+        let third = [1.0 / 3.0; 3];
+        assert!(on([0, 1, 2], third).is_among(3) && ClothVertexBinding::Particle(2).is_among(3));
+        assert!(!on([0, 1, 3], third).is_among(3) && !ClothVertexBinding::Particle(3).is_among(3));
+        for weights in [[f32::NAN; 3], [1.0; 3], [f32::INFINITY, 0.0, 0.0]] {
+            assert!(!on([0, 1, 2], weights).is_among(3));
+        }
+    }
 
     #[test]
     fn what_is_bound_last_counts() {

@@ -40,8 +40,8 @@ pub struct ClothMeshPart {
     pub(super) follow: Follow,
     /// Its vertices; absent before they are known, and where the mesh has no place for them.
     pub(super) packed: Option<Packed>,
-    /// State that the vertices show: steps, part of the step, scale.
-    pub(super) shows: Option<(u64, f32, Vec3)>,
+    /// State that the vertices show: steps and restores, part of the step, scale.
+    pub(super) shows: Option<([u64; 2], f32, Vec3)>,
     /// True if the vertices changed since they were written.
     pub(super) fresh: bool,
     /// True if the asset has been written since the mesh was built.
@@ -113,10 +113,8 @@ impl ClothMeshPart {
     }
 
     /// Binds a vertex to something else: to a point of a triangle, for a mesh that is finer than the cloth, or for what is sewn on it.
-    /// Returns whether there is such a vertex. To be done again where the mesh is built anew.
-    ///
-    /// # Panics
-    /// When it is drawn, where a particle does not exist.
+    /// Returns whether it did: not where there is no such vertex or particle, or where weights are not finite or their sum is not 1. To be
+    /// done again where the mesh is built anew.
     pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
         self.shows = None;
         self.follow.bind(vertex, binding)

@@ -17,6 +17,8 @@ pub(super) const PIECE: usize = 8192;
 
 /// Particle and normal that each vertex of a mesh follows.
 pub(super) struct Follow {
+    /// Number of particles of the cloth.
+    particles: u32,
     pub bindings: Bindings,
     /// For each vertex its normal: of a particle when smooth, of a triangle when flat.
     normal_of_vertex: Vec<u32>,
@@ -40,7 +42,7 @@ impl Follow {
         normal_of_vertex: Vec<u32>,
         backs: Vec<u32>,
         tangents: Option<Tangents>,
-        columns: Option<usize>,
+        (particles, columns): (usize, Option<usize>),
     ) -> Self {
         let first = |list: &[u32]| {
             let in_order = list
@@ -50,6 +52,7 @@ impl Follow {
         };
         let in_order = [&particle_of_vertex, &normal_of_vertex].map(|list| first(list));
         Self {
+            particles: particles as u32,
             bindings: particle_of_vertex.into(),
             normal_of_vertex,
             columns: columns.filter(|_| in_order == [Some(0); 2] && backs.is_empty()),
@@ -66,9 +69,9 @@ impl Follow {
         self.bindings.particles().len()
     }
 
-    /// Binds a vertex to something else. Returns whether there is such a vertex.
+    /// Binds a vertex to something else, where that can be drawn. Returns whether it did.
     pub fn bind(&mut self, vertex: u32, binding: ClothVertexBinding) -> bool {
-        let bound = self.bindings.set(vertex, binding);
+        let bound = binding.is_among(self.particles) && self.bindings.set(vertex, binding);
         if bound {
             self.in_order[0] = None;
             self.columns = None;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use bevy_camera::{primitives::Aabb, visibility::NoAutoAabb};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 use bevy_mesh::{Mesh, Mesh3d, MeshVertexAttribute, skinning::SkinnedMesh};
 use tailorbird_cloth::{
     cloth::{Cloth, ClothShape},
@@ -222,11 +222,20 @@ fn make(
         let Some(mesh) = finder.mesh(part) else {
             return Ok(None);
         };
+        let first = positions.len();
         append(mesh, part.to_cloth, &mut positions, &mut indices)?;
-        if from_mesh.threads == ClothMeshThreads::Uvs {
-            uvs.extend(texture_coordinates(mesh));
+        if from_mesh.threads == ClothMeshThreads::Uvs
+            && let Some(own) = texture_coordinates(mesh)
+        {
+            // Parts before that have none get coordinates without an area, which tell nothing.
+            uvs.resize(first, Vec2::ZERO);
+            uvs.extend(own);
+            uvs.resize(positions.len(), Vec2::ZERO);
         }
         meshes.push(mesh);
+    }
+    if !uvs.is_empty() {
+        uvs.resize(positions.len(), Vec2::ZERO);
     }
     let held = match held(from_mesh, &meshes, &positions, &indices) {
         Ok(held) => held,

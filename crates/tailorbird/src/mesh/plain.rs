@@ -133,14 +133,11 @@ pub(super) fn plain(mesh: &Mesh, without: &[MeshVertexAttribute]) -> Result<Mesh
     Ok(copy)
 }
 
-/// The texture coordinates of the vertices; of a mesh without, not a number.
-pub(super) fn texture_coordinates(mesh: &Mesh) -> Vec<Vec2> {
+/// Texture coordinates of the vertices, if the mesh has any.
+pub(super) fn texture_coordinates(mesh: &Mesh) -> Option<Vec<Vec2>> {
     let values = mesh.try_attribute_option(UV_SETS[0]).ok().flatten();
-    let found = values.and_then(|values| uvs(mesh, values, 0));
-    found.map_or_else(
-        || vec![Vec2::NAN; mesh.count_vertices()],
-        |uvs| uvs.into_iter().map(Vec2::from).collect(),
-    )
+    let uvs = uvs(mesh, values?, 0)?;
+    Some(uvs.into_iter().map(Vec2::from).collect())
 }
 
 /// Bevy's sets of texture coordinates.

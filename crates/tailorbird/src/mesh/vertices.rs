@@ -236,7 +236,10 @@ impl Vertices {
             self.normal_of_vertex,
             self.backs,
             tangents,
-            topology.grid().map(|grid| grid.x as usize),
+            (
+                topology.particles(),
+                topology.grid().map(|grid| grid.x as usize),
+            ),
         );
         (mesh, ClothMeshPart::new(follow))
     }

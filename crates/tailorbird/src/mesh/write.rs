@@ -145,7 +145,7 @@ pub(super) fn follow_cloth(
             None => (step.steps(), fraction),
         };
         let scale = frame.scale();
-        let now = Some((steps, fraction, scale));
+        let now = Some(([steps, step.restores()], fraction, scale));
         let cloth_mesh = cloth_mesh.bypass_change_detection();
         if cloth_mesh.is_stale(topology, normals) || particles.is_empty() {
             continue;
