@@ -7,11 +7,7 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_solver::{
-    particles::Particles,
-    points::Points,
-    topology::{Topology, revision},
-};
+use tailorbird_solver::{particles::Particles, points::Points, topology::Topology};
 use tracing::warn;
 
 use crate::{
@@ -25,7 +21,7 @@ use crate::{
 
 /// The topologies that are in use, so that cloths of equal shape and scale share one.
 #[derive(Default)]
-pub struct SharedTopologies(HashMap<u128, Weak<Topology>>);
+pub struct SharedTopologies(HashMap<u64, Weak<Topology>>);
 
 impl SharedTopologies {
     /// The topology of a shape that is scaled by `scale`, built where no cloth has it yet.
@@ -69,19 +65,12 @@ pub fn build_topology(
         if !frame.placed || !(cloth.is_changed() || outdated && !failed_before) {
             continue;
         }
-        if topology.revision == revision(&cloth.shape, frame.scale()) {
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Shape,
-                dropped(&topology),
-            );
-            continue;
-        }
-        built = true;
         match shared.get(&cloth.shape, frame.scale()) {
+            Ok(new) if new.revision == topology.revision => {
+                tell_dropped(&mut status, entity, &commands, &new);
+            }
             Ok(new) => {
+                built = true;
                 if cloth.is_changed() || !particles.grow(&topology, &new, attached) {
                     *particles = keep_shape(&topology, &new, &particles)
                         .unwrap_or_else(|| ClothParticles::at_rest(&new));
@@ -89,22 +78,8 @@ pub fn build_topology(
                 if !new.report.is_clean() {
                     warn!("{entity}: {}", new.report);
                 }
+                tell_dropped(&mut status, entity, &commands, &new);
                 topology.0 = new;
-                let dropped = dropped(&topology);
-                ClothStatus::update(
-                    &mut status,
-                    entity,
-                    &commands,
-                    ClothErrorSource::Shape,
-                    dropped,
-                );
-                ClothStatus::update(
-                    &mut status,
-                    entity,
-                    &commands,
-                    ClothErrorSource::State,
-                    None,
-                );
             }
             Err(error) => {
                 ClothStatus::update(
@@ -122,10 +97,17 @@ pub fn build_topology(
     }
 }
 
-/// The parts of a mesh that were left out.
-fn dropped(topology: &Topology) -> Vec<ClothErrorKind> {
+/// Tells of a valid shape which parts of it are left out. What was wrong with the state of another one is over.
+fn tell_dropped(
+    status: &mut Mut<ClothStatus>,
+    entity: Entity,
+    commands: &ParallelCommands,
+    topology: &Topology,
+) {
     let dropped = topology.dropped.iter().cloned();
-    dropped.map(ClothErrorKind::from).collect()
+    let dropped: Vec<_> = dropped.map(ClothErrorKind::from).collect();
+    ClothStatus::update(status, entity, commands, ClothErrorSource::Shape, dropped);
+    ClothStatus::update(status, entity, commands, ClothErrorSource::State, None);
 }
 
 impl ClothParticles {

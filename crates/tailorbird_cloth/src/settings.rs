@@ -22,7 +22,7 @@
 //! | setting | default | cost |
 //! | --- | --- | --- |
 //! | [`gravity`](ClothSettings::gravity) | 9.81 m/s² down | nothing |
-//! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution, storms and blows, for each cloth its own | in proportion to their number |
+//! | [`substeps`](ClothSettings::substeps) | `None`: by the resolution, storms and blows, for each cloth its own; [`ClothSubsteps`](crate::solver::ClothSubsteps) sets those of one | in proportion to their number |
 //! | [`substep_budget`](ClothSettings::substep_budget) | 500,000 | 3 ms (sheets) to 8 ms (meshes) in a storm, or for meshes that are asked for more than they have, one core, AVX-512; else nothing |
 //! | [`most_substeps`](ClothSettings::most_substeps) | 64 | nothing until a load needs them |
 //! | [`overlap_speed`](ClothSettings::overlap_speed) | 1 m/s | nothing |

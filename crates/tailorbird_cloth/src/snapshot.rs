@@ -34,8 +34,7 @@ macro_rules! snapshot {
         /// [`ClothPins`], materials, forces on bodies and the other components that it set. Writing equal values again changes nothing.
         ///
         /// Between steps: taken from a system that runs before [`ClothSystems::Prepare`] or after [`ClothSystems::Writeback`]. It takes as
-        /// much memory as the cloths do ([`ClothParticles`] has some 60 bytes a particle); [`take_into`](Self::take_into) uses that of
-        /// an older snapshot again.
+        /// much memory as the cloths do; topologies are shared.
         ///
         /// Not held, as others write it too: [`ClothSettings`](crate::settings::ClothSettings) (a single step counts down in it),
         /// attachments that broke meanwhile and are despawned (spawn them again before), colliders that a physics engine has given for the step
@@ -67,23 +66,22 @@ macro_rules! snapshot {
         impl ClothSnapshot {
             /// Notes the state of all cloths of a world.
             pub fn take(world: &mut World) -> Self {
-                let mut snapshot = Self::default();
-                snapshot.take_into(world);
-                snapshot
-            }
-
-            /// Notes the state of all cloths of a world in the memory of this snapshot.
-            pub fn take_into(&mut self, world: &mut World) {
-                $(take_values(world, &mut self.$component);)*
-                $(self.$resource = world.get_resource::<$Resource>().cloned();)*
+                Self {
+                    $($component: take_values(world),)*
+                    $($resource: world.get_resource().cloned(),)*
+                }
             }
 
             /// Puts all cloths of a world back to this state.
             pub fn restore(&self, world: &mut World) {
                 $(restore_values(world, &self.$component);)*
+                let restores = world.get_resource().map_or(0, |step: &ClothStep| step.restores);
                 $(if let Some(value) = &self.$resource {
                     world.insert_resource(value.clone());
                 })*
+                if let Some(mut step) = world.get_resource_mut::<ClothStep>() {
+                    step.restores = restores + 1;
+                }
             }
         }
     };
@@ -117,20 +115,12 @@ snapshot! {
     }
 }
 
-fn take_values<C: Component + Clone>(world: &mut World, values: &mut Values<C>) {
+fn take_values<C: Component + Clone>(world: &mut World) -> Values<C> {
     let mut query = world.query::<(Entity, &C)>();
-    let mut count = 0;
-    for (entity, value) in query.iter(world) {
-        match values.get_mut(count) {
-            Some(known) => {
-                known.0 = entity;
-                known.1.clone_from(value);
-            }
-            None => values.push((entity, value.clone())),
-        }
-        count += 1;
-    }
-    values.truncate(count);
+    let values = query.iter(world);
+    values
+        .map(|(entity, value)| (entity, value.clone()))
+        .collect()
 }
 
 fn restore_values<C: Component<Mutability = Mutable> + Clone>(

@@ -3,6 +3,7 @@
 use bevy_math::Vec3;
 
 use crate::{
+    fingerprint,
     frame::Frame,
     held::{Held, HeldBy, HolderKind},
     kernels::spring::{self, alpha_tilde},
@@ -25,7 +26,7 @@ pub struct Holds {
     pub disturbed: bool,
     /// Largest displacement of a point in this step \[m\].
     pub furthest: f32,
-    /// Different whenever the holds changed.
+    /// Fingerprint of who holds which particles where.
     pub revision: u64,
 }
 
@@ -105,6 +106,29 @@ impl Holds {
     pub fn particles(&self) -> impl Iterator<Item = u32> + '_ {
         let springs = self.springs.iter().map(|spring| &spring.hold);
         self.rigid.iter().chain(springs).map(|hold| hold.particle)
+    }
+
+    /// Computes [`Self::revision`] anew, where holds changed.
+    pub fn renew_revision(&mut self) {
+        let holds = self
+            .rigid
+            .iter()
+            .chain(self.springs.iter().map(|spring| &spring.hold));
+        let holds = holds.flat_map(|hold| {
+            let [x, y, z] = hold.point.to_array().map(f32::to_bits);
+            [hold.particle, hold.body, x, y, z]
+        });
+        let ids = self
+            .bodies
+            .iter()
+            .flat_map(|body| [body.attachment, body.target]);
+        let ids = ids.flat_map(|id| [id as u32, (id >> 32) as u32]);
+        self.revision = fingerprint::of(
+            [self.rigid.len() as u32]
+                .into_iter()
+                .chain(ids)
+                .chain(holds),
+        );
     }
 
     /// Different whenever other particles are held, or at other points.

@@ -1,11 +1,9 @@
 //! The rest shape of a cloth.
 
-use std::{collections::hash_map::DefaultHasher, hash::Hasher};
-
 use bevy_math::{UVec2, Vec2, Vec3};
 use bevy_reflect::prelude::*;
 
-use crate::{error::ClothShapeError, topology::repair::Repaired};
+use crate::{error::ClothShapeError, fingerprint, topology::repair::Repaired};
 
 /// The rest shape of a cloth.
 #[derive(Clone, Debug, PartialEq, Reflect)]
@@ -189,26 +187,19 @@ impl ClothShape {
         }
     }
 
-    /// Hash of a shape and its scale, of 128 bits: two that differ do not meet in practice, so that no shape has to be kept to compare
+    /// Fingerprint of a shape and its scale, never 0: shapes that differ do not share one in practice, so that none has to be kept to compare
     /// with.
-    pub fn fingerprint(&self, scale: Vec3) -> u128 {
-        let mut halves = [DefaultHasher::new(), DefaultHasher::new()];
-        halves[1].write_u8(1);
-        let mut write = |number: u32| halves.iter_mut().for_each(|half| half.write_u32(number));
-        scale.to_array().iter().for_each(|v| write(v.to_bits()));
-        match self {
+    pub fn fingerprint(&self, scale: Vec3) -> u64 {
+        let scale = scale.to_array().map(f32::to_bits);
+        let print = match self {
             Self::Grid {
                 size,
                 resolution,
                 origin,
             } => {
-                let numbers = [size.to_array(), origin.to_array()].map(|p| p.map(f32::to_bits));
-                let numbers = numbers.as_flattened().iter();
-                [0].iter()
-                    .chain(&resolution.to_array())
-                    .chain(numbers)
-                    .copied()
-                    .for_each(write);
+                let measures = [*size, *origin].map(|v| v.to_array().map(f32::to_bits));
+                let kind = [0].into_iter().chain(scale).chain(resolution.to_array());
+                fingerprint::of(kind.chain(measures.into_iter().flatten()))
             }
             Self::Mesh {
                 positions,
@@ -216,18 +207,15 @@ impl ClothShape {
                 uvs,
                 weld_distance,
             } => {
-                [1, weld_distance.to_bits(), positions.len() as u32]
-                    .into_iter()
-                    .for_each(&mut write);
+                let counts = [1, positions.len() as u32, indices.len() as u32];
+                let kind = counts.into_iter().chain(scale);
                 let coordinates = positions.iter().flat_map(Vec3::to_array);
-                coordinates.map(f32::to_bits).for_each(&mut write);
-                indices.iter().copied().for_each(&mut write);
-                let uvs = uvs.iter().flat_map(Vec2::to_array).map(f32::to_bits);
-                uvs.for_each(write);
+                let numbers = coordinates.chain(uvs.iter().flat_map(Vec2::to_array));
+                let numbers = numbers.chain([*weld_distance]).map(f32::to_bits);
+                fingerprint::of(kind.chain(numbers).chain(indices.iter().copied()))
             }
-        }
-        let [low, high] = halves.map(|half| u128::from(half.finish()));
-        high << 64 | low
+        };
+        print.max(1)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use bevy_math::{Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
+use tailorbird_test::unit;
 
 /// Largest displacement of inner vertices of the irregular sheet along each axis, as a part of the cells.
 pub const JITTER: f32 = 0.25;
@@ -87,13 +88,4 @@ fn shuffled(
     let key = |t: &[u32; 3]| unit(u64::from(t[0]) << 32 | u64::from(t[1]) << 16 | u64::from(t[2]));
     triangles.sort_by(|a, b| key(a).total_cmp(&key(b)));
     Cloth::mesh(positions, triangles.concat())
-}
-
-/// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).
-pub fn unit(key: u64) -> f32 {
-    let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 40) as f32 / (1u32 << 23) as f32 - 1.0
 }

@@ -149,7 +149,7 @@ impl Sheet {
     fn nudge(&mut self, args: &Args, timestep: Duration) {
         let particles = self.get::<ClothParticles>();
         let free = |i: &usize| !particles.is_pinned(*i);
-        let random = |i: usize| mesh::unit(args.seed ^ (i as u64).rotate_left(32));
+        let random = |i: usize| tailorbird_test::unit(args.seed ^ (i as u64).rotate_left(32));
         let (mass, moment) = (0..particles.len())
             .filter(free)
             .map(|i| (particles.mass(i), particles.mass(i) * random(i)))

@@ -206,7 +206,9 @@ pub fn prepare_attachments(
             .0
             .finish(frame, &mut particles.0, step.world_seconds());
         attached.0.disturbed |= changed || moved;
-        attached.0.revision += u64::from(changed);
+        if changed {
+            attached.0.renew_revision();
+        }
         // One that sleeps remembers where things were when it fell asleep, however slowly they creep away.
         let awake = !rest.is_asleep() || attached.disturbed;
         for body in &attached.bodies {

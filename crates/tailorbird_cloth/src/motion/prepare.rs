@@ -188,42 +188,35 @@ impl ClothMotionState {
 
     /// Reads valid constraints. Returns whether they are others than before.
     fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
-        let before = [
-            &self.limits.max_distance,
-            &self.limits.backstop_distance,
-            &self.limits.backstop_radius,
-        ]
-        .map(Clone::clone);
         let given = |i| topology.order.given(i as u32) as usize;
         let stored = |values: &ClothPerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
         };
-        self.limits.max_distance = stored(&constraints.max_distance, f32::INFINITY);
-        self.limits.backstop_distance = stored(&constraints.backstop_distance, f32::INFINITY);
-        self.limits.backstop_radius = stored(&constraints.backstop_radius, 1.0);
-        if self
-            .limits
-            .backstop_distance
-            .iter()
-            .all(|d| d.is_infinite())
-        {
-            (self.limits.backstop_distance, self.limits.backstop_radius) = Default::default();
+        let max_distance = stored(&constraints.max_distance, f32::INFINITY);
+        let mut backstop = [
+            stored(&constraints.backstop_distance, f32::INFINITY),
+            stored(&constraints.backstop_radius, 1.0),
+        ];
+        if backstop[0].iter().all(|d| d.is_infinite()) {
+            backstop = Default::default();
         }
-        let held = self.limits.max_distance.iter().enumerate();
+        let held = max_distance.iter().enumerate();
         self.held = held
             .filter(|(_, most)| **most == 0.0)
             .map(|(i, _)| i as u32)
             .collect();
-        let now = [
-            &self.limits.max_distance,
-            &self.limits.backstop_distance,
-            &self.limits.backstop_radius,
-        ];
-        before
-            .iter()
-            .zip(now)
-            .any(|(before, now)| **before != **now)
+        let [distance, radius] = backstop;
+        let limits = &mut self.limits;
+        let known = (
+            &limits.max_distance,
+            &limits.backstop_distance,
+            &limits.backstop_radius,
+        );
+        let changed = known != (&max_distance, &distance, &radius);
+        limits.max_distance = max_distance;
+        (limits.backstop_distance, limits.backstop_radius) = (distance, radius);
+        changed
     }
 
     /// Puts the targets to where the particles are at rest.

@@ -18,6 +18,7 @@ use crate::{
         viscosity::{self, Beside, SheetMotion},
     },
     particles::{Input, Particles, Scratch, State},
+    points::Points,
     substep::Substep,
     tethers::{Anchors, Tethers},
     topology::{
@@ -300,16 +301,7 @@ pub fn integrate(
             // ν = c L²/(4 h) on a square grid.
             let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
             let motion = SheetMotion {
-                sheet: Sheet {
-                    columns: lattice.columns as usize,
-                    rows: lattice.rows as usize,
-                    position: SharedPoints::new(position),
-                    inv_mass: Shared::new(inv_mass),
-                    normal: None,
-                    pressed: None,
-                    give: Give::default(),
-                    lengths: None,
-                },
+                sheet: bare(lattice, position, inv_mass),
                 previous: SharedPoints::new(previous_position),
                 lost: SharedPoints::new(lost_displacement),
                 acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
@@ -334,6 +326,20 @@ pub fn integrate(
             );
             0
         }
+    }
+}
+
+/// A sheet without contacts.
+pub fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]) -> Sheet<'a> {
+    Sheet {
+        columns: lattice.columns as usize,
+        rows: lattice.rows as usize,
+        position: SharedPoints::new(position),
+        inv_mass: Shared::new(inv_mass),
+        normal: None,
+        pressed: None,
+        give: Give::default(),
+        lengths: None,
     }
 }
 

@@ -2,21 +2,15 @@
 
 use fearless_simd::Level;
 
+use super::chains::bare;
 use crate::{
     effort::{EdgeSurvey, Effort, Longest},
     grant::Threads,
-    kernels::{
-        lanes::{Shared, SharedPoints},
-        lattice::Sheet,
-        lines::Give,
-        rigid_motion::RigidMotion,
-        squeeze,
-    },
+    kernels::{lanes::SharedPoints, rigid_motion::RigidMotion, squeeze},
     particles::{Input, Particles, State},
     points::Points,
     topology::{
         Topology,
-        lattice::Lattice,
         layout::{Layout, SheetLayout},
     },
 };
@@ -134,20 +128,6 @@ pub fn damp(
                 give_back(whole, mass, position, previous_position);
             }
         }
-    }
-}
-
-/// A sheet without contacts.
-fn bare<'a>(lattice: &Lattice, position: &'a mut Points, inv_mass: &'a mut [f32]) -> Sheet<'a> {
-    Sheet {
-        columns: lattice.columns as usize,
-        rows: lattice.rows as usize,
-        position: SharedPoints::new(position),
-        inv_mass: Shared::new(inv_mass),
-        normal: None,
-        pressed: None,
-        give: Give::default(),
-        lengths: None,
     }
 }
 

@@ -119,7 +119,7 @@ impl Topology {
                 edges::build(positions, indices, uvs, *weld_distance, scale)?
             }
         };
-        topology.revision = revision(shape, scale);
+        topology.revision = shape.fingerprint(scale);
         topology.scale = scale;
         topology.measure_areas();
         Ok(topology)
@@ -317,10 +317,4 @@ impl Topology {
         }
         self.cell_area = self.triangle_areas().sum::<f32>() / self.particles().max(1) as f32;
     }
-}
-
-/// The revision of the topology of a shape that is scaled by `scale`.
-pub fn revision(shape: &ClothShape, scale: Vec3) -> u64 {
-    let print = shape.fingerprint(scale);
-    ((print >> 64) as u64 ^ print as u64).max(1)
 }
