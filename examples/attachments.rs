@@ -1,11 +1,20 @@
-//! A flag in a hand: an attachment holds its edge at a bone. The skeleton is made in code; a bone of a character from a glTF file is
-//! found by its name as well.
+//! A flag in a hand: an attachment holds its edge at a bone of a skinned mesh. The skeleton is made in code; a bone of a character
+//! from a glTF file is found by its name as well.
 //!
 //! Space: let go, and take hold again. Drag the flag with the left mouse button.
 
-use bevy::prelude::*;
+use bevy::{
+    camera::visibility::DynamicSkinnedMeshBounds,
+    mesh::{
+        VertexAttributeValues,
+        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    },
+    prelude::*,
+};
 use tailorbird::prelude::*;
 
+/// From the shoulder to the elbow, and from there to the hand [m].
+const BONE: f32 = 0.5;
 /// Of the flag [m].
 const SIZE: Vec2 = Vec2::new(1.0, 0.66);
 const RESOLUTION: UVec2 = UVec2::new(49, 33);
@@ -62,7 +71,8 @@ fn setup(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
-) {
+    mut skeletons: ResMut<Assets<SkinnedMeshInverseBindposes>>,
+) -> Result {
     commands.spawn((
         Cloth::grid(SIZE, RESOLUTION),
         ClothMaterial::silk(),
@@ -70,27 +80,28 @@ fn setup(
         Transform::from_xyz(0.0, 2.9, 0.0),
     ));
 
-    // Each bone is a child of the one before, and what is seen of it is another child.
     let grey = MeshMaterial3d(materials.add(Color::srgb(0.36, 0.38, 0.40)));
-    let at = |height| Transform::from_xyz(0.0, height, 0.0);
-    let bone = |name, swing, late, height| (Bone(swing, late), Name::new(name), at(height));
-    let part = |mesh: &Mesh3d, height| (mesh.clone(), grey.clone(), at(height));
-    let limb = Mesh3d(meshes.add(Capsule3d::new(0.055, 0.5)));
+    let bone = |name, swing, late, height| {
+        let place = Transform::from_xyz(0.0, height, 0.0);
+        (Bone(swing, late), Name::new(name), place)
+    };
+    let shoulder = commands.spawn(bone("shoulder", 0.35, 0.0, 1.2)).id();
+    let elbow = bone("elbow", 0.5, 0.7, BONE);
+    let elbow = commands.spawn((elbow, ChildOf(shoulder))).id();
     let stick = Mesh3d(meshes.add(Cylinder::new(0.012, 0.95)));
-    let hand = (bone("hand", 0.4, 1.4, 0.5), children![part(&stick, 0.35)]);
-    let elbow = (
-        bone("elbow", 0.5, 0.7, 0.5),
-        children![part(&limb, 0.25), hand],
-    );
-    let shoulder = bone("shoulder", 0.35, 0.0, 1.2);
-    commands.spawn((shoulder, children![part(&limb, 0.25), elbow]));
+    let stick = (stick, grey.clone(), Transform::from_xyz(0.0, 0.35, 0.0));
+    let hand = (bone("hand", 0.4, 1.4, BONE), children![stick]);
+    commands.spawn((hand, ChildOf(elbow)));
+    let at_rest = [0.0, BONE].map(|y| Mat4::from_translation(-y * Vec3::Y));
     commands.spawn((
-        ClothCollider::capsule(0.16, 0.9),
-        Mesh3d(meshes.add(Capsule3d::new(0.16, 0.9))),
+        Mesh3d(meshes.add(arm()?)),
         grey,
-        Transform::from_xyz(-0.12, 0.62, 0.0),
+        SkinnedMesh {
+            inverse_bindposes: skeletons.add(at_rest.to_vec()),
+            joints: vec![shoulder, elbow],
+        },
+        DynamicSkinnedMeshBounds,
     ));
-
     commands.spawn((
         ClothCollider::half_space(),
         Mesh3d(meshes.add(Plane3d::default().mesh().size(200.0, 200.0))),
@@ -111,4 +122,23 @@ fn setup(
         },
         Transform::from_xyz(0.4, 1.7, 4.3).looking_at(Vec3::new(0.1, 1.5, 0.0), Vec3::Y),
     ));
+    Ok(())
+}
+
+/// A capsule along y whose vertices follow the upper bone, the lower one, or near the elbow both.
+fn arm() -> Result<Mesh> {
+    let capsule = Capsule3d::new(0.055, 2.0 * BONE).mesh().rings(24).build();
+    let mut arm = capsule.translated_by(BONE * Vec3::Y);
+    let Some(VertexAttributeValues::Float32x3(places)) = arm.attribute(Mesh::ATTRIBUTE_POSITION)
+    else {
+        return Err("a capsule without places".into());
+    };
+    let fore = places
+        .iter()
+        .map(|place| ((place[1] - BONE) / 0.2 + 0.5).clamp(0.0, 1.0));
+    let weights: Vec<_> = fore.map(|fore| [1.0 - fore, fore, 0.0, 0.0]).collect();
+    let joints = VertexAttributeValues::Uint16x4(vec![[0, 1, 0, 0]; weights.len()]);
+    arm.insert_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights);
+    arm.insert_attribute(Mesh::ATTRIBUTE_JOINT_INDEX, joints);
+    Ok(arm.with_generated_skinned_mesh_bounds()?)
 }
