@@ -10,9 +10,25 @@ use tailorbird_solver::contact::{
 
 use super::ClothColliderShape;
 
-/// Hulls and meshes at the scales at which they are in use, by the fingerprints of their shapes.
+/// Hulls and meshes at the scales at which they are in use.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Solids(BTreeMap<(u64, [u32; 3]), Kept>);
+pub(super) struct Solids(BTreeMap<Key, Kept>);
+
+/// Content of a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Key {
+    /// Kind of the shape: a hull and a mesh can have the same corners and triangles.
+    kind: Kind,
+    fingerprint: u64,
+    /// Bits of the scale.
+    scale: [u32; 3],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Hull,
+    Mesh,
+}
 
 /// A solid that is kept from step to step.
 #[derive(Clone, Debug)]
@@ -66,13 +82,13 @@ impl Solids {
                 scale,
             },
             ClothColliderShape::ConvexHull(ref hull) => {
-                return self.kept(step, hull.fingerprint(), scale, || {
+                return self.kept(step, (Kind::Hull, hull.fingerprint()), scale, || {
                     let hull = Hull::new(hull.points(), hull.triangles(), scale)?;
                     Some(Solid::Hull(Arc::new(hull)))
                 });
             }
             ClothColliderShape::TriMesh(ref mesh) => {
-                return self.kept(step, mesh.fingerprint(), scale, || {
+                return self.kept(step, (Kind::Mesh, mesh.fingerprint()), scale, || {
                     let surface = Surface::new(mesh.positions(), mesh.triangles(), scale)?;
                     Some(Solid::Mesh(Arc::new(surface)))
                 });
@@ -85,11 +101,15 @@ impl Solids {
     fn kept(
         &mut self,
         step: u64,
-        fingerprint: u64,
+        (kind, fingerprint): (Kind, u64),
         scale: Vec3,
         make: impl FnOnce() -> Option<Solid>,
     ) -> Option<Solid> {
-        let key = (fingerprint, scale.to_array().map(f32::to_bits));
+        let key = Key {
+            kind,
+            fingerprint,
+            scale: scale.to_array().map(f32::to_bits),
+        };
         let kept = self.0.entry(key).or_insert_with(|| Kept {
             used: step,
             solid: make(),
@@ -101,11 +121,37 @@ impl Solids {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::TriMesh, *};
+    use super::{
+        super::{ConvexHull, TriMesh},
+        *,
+    };
 
     fn triangle(height: f32) -> ClothColliderShape {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p + Vec3::Y * height);
         ClothColliderShape::TriMesh(TriMesh::new(corners, [[0, 2, 1]]).expect("a triangle"))
+    }
+
+    /// A hull and a mesh of the same corners and triangles are not taken for each other, whichever comes first.
+    #[test]
+    fn a_hull_is_no_mesh() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let hull = ConvexHull::new(&corners).expect("a tetrahedron");
+        let mesh = TriMesh::new(hull.points(), hull.triangles()).expect("its surface");
+        let shapes = [
+            ClothColliderShape::ConvexHull(hull),
+            ClothColliderShape::TriMesh(mesh),
+        ];
+        for order in [[0, 1], [1, 0]] {
+            let mut solids = Solids::default();
+            for k in order {
+                let solid = solids.scaled(1, &shapes[k], Vec3::ONE);
+                assert_eq!(
+                    matches!(solid, Some(Solid::Hull(_))),
+                    k == 0,
+                    "{order:?}: {solid:?}"
+                );
+            }
+        }
     }
 
     /// A mesh that is gone is not taken for a new one at its address, though no step has forgotten it yet.
