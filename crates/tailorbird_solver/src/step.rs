@@ -11,6 +11,7 @@ use crate::{
     particles::{Input, Particles, State},
     solve,
     substep::Substep,
+    topology::order::Stored,
 };
 
 /// A stage of a substep: a change of a cloth.
@@ -63,7 +64,7 @@ pub struct Report {
     /// The part of the edges that is longer than the fabric lets them be [-].
     pub stretched: f32,
     /// The first particle, in storage order, whose position or velocity is not finite.
-    pub non_finite: Option<u32>,
+    pub non_finite: Option<Stored>,
 }
 
 impl Report {
@@ -85,7 +86,7 @@ impl Report {
             non_finite: if finite {
                 None
             } else {
-                wrong().map(|i| i as u32)
+                wrong().map(|i| Stored(i as u32))
             },
         }
     }

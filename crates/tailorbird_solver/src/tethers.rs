@@ -16,6 +16,7 @@ use crate::{
         Topology,
         geodesic::{Geodesics, tether_anchors},
         lattice::Lattice,
+        order::Stored,
     },
 };
 
@@ -23,7 +24,7 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub struct Tethers {
     fields: Fields,
-    pins: Vec<u32>,
+    pins: Vec<Stored>,
     revision: u64,
     coming: Option<Coming>,
     /// For how long what is beyond them comes back slowly, as some are new \[s\].
@@ -163,10 +164,13 @@ impl Tethers {
     }
 
     /// The point nearest to `p` that a particle gets to, its tethers being `slack` times as long as at rest \[m\].
-    pub fn reached(&self, particle: u32, p: Vec3, position: &Points, slack: f32) -> Vec3 {
+    pub fn reached(&self, particle: Stored, p: Vec3, position: &Points, slack: f32) -> Vec3 {
         self.fields.iter().flatten().fold(p, |p, field| {
             let anchor = position.get(field.pin as usize);
-            let reach = field.ways.length(particle).map_or(f32::MAX, |l| l * slack);
+            let reach = field
+                .ways
+                .length(particle.0)
+                .map_or(f32::MAX, |l| l * slack);
             anchor + (p - anchor).clamp_length_max(reach)
         })
     }
@@ -180,7 +184,7 @@ impl Tethers {
     pub fn build(
         &mut self,
         topology: &Arc<Topology>,
-        pins: impl Iterator<Item = u32> + Clone,
+        pins: impl Iterator<Item = Stored> + Clone,
         (step, seconds): (u64, f32),
     ) {
         let known = self.revision == topology.revision;
@@ -200,7 +204,7 @@ impl Tethers {
         self.revision = topology.revision;
         self.pins = pins.collect();
         self.coming = None;
-        let mut pins = self.pins.clone();
+        let mut pins: Vec<u32> = self.pins.iter().map(|pin| pin.0).collect();
         // So that a sheet does the same however its particles were given.
         pins.sort_unstable();
         let rest = &topology.rest_positions;

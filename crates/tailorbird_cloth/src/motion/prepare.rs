@@ -9,7 +9,10 @@ use tailorbird_solver::{
     memory::heap,
     numbers::Numbers,
     points::Points,
-    topology::Topology,
+    topology::{
+        Topology,
+        order::{Given, Stored},
+    },
 };
 
 use super::{
@@ -150,7 +153,7 @@ pub fn prepare_motion(
         }
         let held = &motion.held;
         let order = particles.order.clone();
-        let unpinned = |&i: &u32| !particles.is_pinned(order.given(i) as usize);
+        let unpinned = |&i: &Stored| !particles.is_pinned(order.given(i).index());
         let wanted = held.iter().copied().filter(unpinned);
         let limited = particles.input.held.of(HolderKind::Limit);
         // No memory is needed where nothing changed.
@@ -188,7 +191,7 @@ impl ClothMotionState {
 
     /// Reads valid constraints. Returns whether they are others than before.
     fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
-        let given = |i| topology.order.given(i as u32) as usize;
+        let given = |i| topology.order.given(Stored(i as u32)).index();
         let stored = |values: &ClothPerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
@@ -204,7 +207,7 @@ impl ClothMotionState {
         let held = max_distance.iter().enumerate();
         self.held = held
             .filter(|(_, most)| **most == 0.0)
-            .map(|(i, _)| i as u32)
+            .map(|(i, _)| Stored(i as u32))
             .collect();
         let [distance, radius] = backstop;
         let limits = &mut self.limits;
@@ -271,7 +274,7 @@ impl ClothMotionState {
             }),
         };
         for i in 0..targets.positions[0].len() {
-            let stored = topology.order.stored(i as u32) as usize;
+            let stored = topology.order.stored(Given(i as u32)).index();
             self.limits.targets[1].set(stored, point(targets.position(i)));
         }
         if targets.normals[0].is_empty() {
@@ -281,7 +284,7 @@ impl ClothMotionState {
             }
         } else {
             for i in 0..targets.normals[0].len() {
-                let stored = topology.order.stored(i as u32) as usize;
+                let stored = topology.order.stored(Given(i as u32)).index();
                 let normal = vector(targets.normal(i)).normalize_or_zero();
                 self.limits.normals[1].set(stored, normal);
             }

@@ -167,7 +167,7 @@ impl ClothMotionState {
         } = &mut particles.0;
         let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
         let limited = held.of(HolderKind::Limit).iter();
-        for i in free.chain(limited.map(|held| held.particle as usize)) {
+        for i in free.chain(limited.map(|held| held.particle.index())) {
             let way = end.get(i) - start.get(i);
             for points in [&mut *position, &mut *previous_position, &mut *step_position] {
                 points.add(i, way);

@@ -218,7 +218,7 @@ impl MovingCollider {
         particles.state.touch.colliders += usize::from(touches && phase == Phase::Approach);
         particles.state.touch.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some((held, _)) = particles.input.held.in_hand() {
-            self.collide_held(held as usize, &motion, margin, particles, cache);
+            self.collide_held(held.index(), &motion, margin, particles, cache);
         }
     }
 

@@ -65,7 +65,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
         );
     }
     for (pin, place) in held.pins() {
-        let i = pin as usize;
+        let i = pin.index();
         let from = position.get(i);
         position.set(i, from + (place - from) / substep.left() as f32);
     }
