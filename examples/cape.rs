@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use bevy::{app::RunFixedMainLoopSystems::AfterFixedMainLoop, prelude::*};
 use tailorbird::prelude::*;
 
-/// What moves: the whole figure, or what swings about a joint at a place [m] by a scaled axis [rad].
+/// A moving part: the whole figure, or what swings about a joint at a place [m] by a scaled axis [rad].
 #[derive(Component, Clone, Copy)]
 #[require(Transform, Visibility)]
 enum Joint {

@@ -24,7 +24,7 @@ const JUMP: f32 = 0.4;
 /// From teleport to teleport [s].
 const TELEPORTS: f32 = 8.0;
 
-/// What a cape feels of its wearer: most of the way, less of the turns, nothing of being put elsewhere.
+/// Motion of its wearer that a cape feels: most of the displacement, less of the turns, nothing of being put elsewhere.
 pub fn inertia() -> ClothInertia {
     ClothInertia {
         linear: 0.7,
@@ -34,7 +34,7 @@ pub fn inertia() -> ClothInertia {
     }
 }
 
-/// How a cape is turned at rest: it lies in the air behind its wearer, not in the chest.
+/// Turn of a cape at rest: it lies in the air behind its wearer, not in the chest.
 pub fn behind() -> Quat {
     Quat::from_rotation_x(1.2)
 }
@@ -150,7 +150,7 @@ pub fn spawn(commands: &mut Commands, assets: &mut SceneAssets) -> Entity {
     chest
 }
 
-/// How much of a run it is already: it starts standing.
+/// Part of a run that it is already, 0 to 1: it starts standing.
 fn pace(t: f32) -> f32 {
     (t - 0.5).clamp(0.0, 1.0)
 }

@@ -31,7 +31,7 @@ pub fn shift(scene: SceneKind) -> Vec3 {
     Vec3::X * (width + GAP)
 }
 
-/// Where both are looked at from.
+/// View of both cloths.
 pub fn view(scene: SceneKind) -> OrbitCamera {
     let alone = scene.view();
     let way = shift(scene);
@@ -81,18 +81,18 @@ fn of_scene(world: &mut World) -> Vec<Entity> {
     all.iter(world).collect()
 }
 
-/// How one cloth does.
+/// Figures of one cloth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClothFigures {
-    /// How it is solved.
+    /// Its solver.
     pub solver: ClothSolver,
     /// Its particles.
     pub particles: usize,
-    /// How far it is stretched [-].
+    /// Stretch of its edges [-].
     pub stretch: ClothStretch,
 }
 
-/// What the cloths of the scene do, the first one first.
+/// Figures of the cloths of the scene, the first one first.
 pub fn figures(
     cloths: &Query<(&ClothSolver, &ClothParticles, &ClothTopology, Has<Beside>), With<SceneCloth>>,
 ) -> Vec<ClothFigures> {

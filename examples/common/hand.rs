@@ -31,9 +31,9 @@ impl Plugin for HandPlugin {
 /// The hand.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hand {
-    /// Where it is in the window [logical pixels], while it is shown.
+    /// Place in the window [logical pixels], while it is shown.
     pub at: Option<Vec2>,
-    /// Whether it takes what is under it.
+    /// True if it takes what is under it.
     pub closed: bool,
     /// Frames until it closes: what is under it is known by then.
     closes_in: u32,
@@ -46,15 +46,15 @@ const WAYS: [(KeyCode, Vec2); 4] = [
     (KeyCode::KeyJ, Vec2::NEG_X),
     (KeyCode::KeyL, Vec2::X),
 ];
-/// How fast [heights of the window/s].
+/// Its speed [heights of the window/s].
 const SPEED: f32 = 0.4;
-/// How fast what it holds comes nearer or goes away [m/s].
+/// Speed at which what it holds comes nearer or goes away [m/s].
 const REACH: f32 = 0.8;
 /// The depth of what is under it comes back from the renderer some frames later.
 const LOOKS: u32 = 5;
 
 impl Hand {
-    /// Who it is among mouse and fingers.
+    /// Its number among mouse and fingers.
     pub const POINTER: PointerId =
         PointerId::Custom(Uuid::from_u128(0x6f0c_41f1_8a52_4a0e_9a5c_0d1b_7b62_33e4));
 

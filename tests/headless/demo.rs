@@ -208,7 +208,7 @@ fn keys_hide_the_panel_go_through_the_scenes_and_turn_the_view() {
     assert_eq!(after.pitch, before.pitch);
 }
 
-/// Where the camera is.
+/// View of the camera.
 pub fn view(app: &mut App) -> OrbitCamera {
     let camera = one::<With<OrbitCamera>>(app);
     *get(app, camera)

@@ -24,7 +24,7 @@ fn attach(sim: &mut Sim, cloth: Entity, to: Entity, attachment: ClothAttachment)
     sim.spawn((attachment.to(to), ClothAttachmentOf(cloth)));
 }
 
-/// Where all particles are drawn, in the world, where the cloth and its targets are now.
+/// Drawn places of all particles, in the world, where the cloth and its targets are now.
 fn drawn(
     sim: &Sim,
     cloth: Entity,

@@ -1,4 +1,4 @@
-//! What is attached is drawn where its holder is drawn, in every frame, however frames and steps fall.
+//! Attached particles are drawn where their holder is drawn, in every frame, however frames and steps fall.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ fn swing(time: Res<Time<Virtual>>, mut bones: Query<&mut Transform, With<Bone>>)
     }
 }
 
-/// Where the vertices are drawn in the world.
+/// Drawn places of the vertices in the world.
 fn drawn(app: &App, cloth: Entity) -> Vec<Vec3> {
     let handle = &get::<Mesh3d>(app, cloth).0;
     let meshes = app.world().resource::<Assets<Mesh>>();
