@@ -257,26 +257,26 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 fn measure(scene: [u32; 2], away: bool, frames: u32) -> Vec<Record> {
-    const WAYS: [Meshes; 3] = [Meshes::Nothing, Meshes::Asset, Meshes::Slab];
+    const TREATMENTS: [Meshes; 3] = [Meshes::Nothing, Meshes::Asset, Meshes::Slab];
     let mut app = app(scene, away);
     for _ in 0..20 {
         frame(&mut app);
     }
-    let mut found = WAYS.map(|_| Vec::new());
+    let mut found = TREATMENTS.map(|_| Vec::new());
     for k in 0..3 * frames.div_ceil(3) {
         // In turns of a few frames, of which the first are not counted: others use this machine as well.
-        let way = k as usize % WAYS.len();
-        app.insert_resource(WAYS[way]);
-        app.world_mut().resource_mut::<ClothMeshSettings>().write = match WAYS[way] {
+        let treatment = k as usize % TREATMENTS.len();
+        app.insert_resource(TREATMENTS[treatment]);
+        app.world_mut().resource_mut::<ClothMeshSettings>().write = match TREATMENTS[treatment] {
             Meshes::Asset => ClothMeshWrite::Asset,
             _ => ClothMeshWrite::Slab,
         };
         for _ in 0..3 {
             frame(&mut app);
         }
-        found[way].extend((0..3).map(|_| frame(&mut app)));
+        found[treatment].extend((0..3).map(|_| frame(&mut app)));
     }
-    let records = WAYS.into_iter().zip(found).map(|(writes, frames)| {
+    let records = TREATMENTS.into_iter().zip(found).map(|(writes, frames)| {
         let part = |of: fn(&Frame) -> f64| median(frames.iter().map(of).collect());
         let total = part(Frame::total);
         Record {

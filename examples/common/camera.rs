@@ -51,7 +51,7 @@ pub struct Followed;
 impl OrbitCamera {
     /// Largest angle up and down [rad].
     const STEEPEST: f32 = FRAC_PI_2 - 0.05;
-    /// Turn per pixel of the mouse's way [rad].
+    /// Turn per pixel of the mouse's displacement [rad].
     const TURN: f32 = 0.006;
 
     /// Looks at `focus` [m] from `distance` [m]; yaw and pitch in degrees.
@@ -125,18 +125,18 @@ fn turn_by_mouse(
         if zooms && notches != 0.0 {
             camera.zoom(notches);
         }
-        let way = motion.delta;
-        if way == Vec2::ZERO {
+        let drag = motion.delta;
+        if drag == Vec2::ZERO {
             continue;
         }
         match *hold {
             Hold::None => {}
             Hold::Turn => {
-                let turn = -way * OrbitCamera::TURN;
+                let turn = -drag * OrbitCamera::TURN;
                 camera.turn(turn.x, -turn.y);
             }
             Hold::Move => {
-                let step = Vec3::new(-way.x, way.y, 0.0) * 0.001 * camera.distance;
+                let step = Vec3::new(-drag.x, drag.y, 0.0) * 0.001 * camera.distance;
                 let step = camera.rotation() * step;
                 camera.focus += step;
             }

@@ -40,7 +40,7 @@ pub struct Hand {
 }
 
 /// The keys that move it, and where to: right and down.
-const WAYS: [(KeyCode, Vec2); 4] = [
+const DIRECTIONS: [(KeyCode, Vec2); 4] = [
     (KeyCode::KeyI, Vec2::NEG_Y),
     (KeyCode::KeyK, Vec2::Y),
     (KeyCode::KeyJ, Vec2::NEG_X),
@@ -95,14 +95,14 @@ fn move_hand(
         input.pointer_id == PointerId::Mouse && matches!(input.action, PointerAction::Move { .. })
     });
     let (before, mut now) = (*hand, *hand);
-    let pressed = WAYS.iter().filter(|(key, _)| keys.pressed(*key));
-    let way: Vec2 = pressed.map(|(_, way)| *way).sum();
+    let pressed = DIRECTIONS.iter().filter(|(key, _)| keys.pressed(*key));
+    let direction: Vec2 = pressed.map(|(_, direction)| *direction).sum();
     let size = window.size();
-    if way != Vec2::ZERO || keys.just_pressed(KeyCode::KeyG) {
+    if direction != Vec2::ZERO || keys.just_pressed(KeyCode::KeyG) {
         let at = now.at.unwrap_or(0.5 * size);
-        let way = way * SPEED * size.y * time.delta_secs();
+        let displacement = direction * SPEED * size.y * time.delta_secs();
         // At the very edge it would be outside.
-        now.at = Some((at + way).clamp(Vec2::ONE, (size - 1.0).max(Vec2::ONE)));
+        now.at = Some((at + displacement).clamp(Vec2::ONE, (size - 1.0).max(Vec2::ONE)));
     }
     if keys.just_pressed(KeyCode::KeyG) {
         let opens = now.closed || now.closes_in > 0;
@@ -112,7 +112,7 @@ fn move_hand(
         now.closed = now.closes_in == 0;
     }
     let idle = !now.closed && now.closes_in == 0;
-    if keys.just_pressed(KeyCode::Escape) || mouse_moved && idle && way == Vec2::ZERO {
+    if keys.just_pressed(KeyCode::Escape) || mouse_moved && idle && direction == Vec2::ZERO {
         now = Hand::default();
     }
     let at = now.at.or(before.at).unwrap_or_default();
@@ -141,13 +141,13 @@ fn move_hand(
 /// U and O bring what it holds nearer, and farther away.
 fn reach(keys: Res<ButtonInput<KeyCode>>, time: Res<Time<Real>>, mut held: Query<&mut ClothDrag>) {
     let sign = |key| f32::from(u8::from(keys.pressed(key)));
-    let way = (sign(KeyCode::KeyO) - sign(KeyCode::KeyU)) * REACH * time.delta_secs();
-    if way == 0.0 {
+    let displacement = (sign(KeyCode::KeyO) - sign(KeyCode::KeyU)) * REACH * time.delta_secs();
+    if displacement == 0.0 {
         return;
     }
     for mut drag in &mut held {
         if drag.pointer == Hand::POINTER {
-            drag.depth = (drag.depth + way).max(0.1);
+            drag.depth = (drag.depth + displacement).max(0.1);
         }
     }
 }

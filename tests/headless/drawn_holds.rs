@@ -69,8 +69,8 @@ fn they_are_where_their_bone_is() {
             let at = *get::<GlobalTransform>(&app, bone);
             let all = drawn(&app, cloth);
             for (k, point) in held.iter().enumerate() {
-                let way = all[k].distance(at.transform_point(*point));
-                assert!(way < 1e-4, "{rate} Hz, frame {frame}: {way} m");
+                let distance = all[k].distance(at.transform_point(*point));
+                assert!(distance < 1e-4, "{rate} Hz, frame {frame}: {distance} m");
             }
             // What lies around them comes along: the bone is up to 15 cm further on than the cloth, which is spread over 60 cm.
             for k in 0..SIDE * (SIDE - 1) {

@@ -142,8 +142,8 @@ fn tangents_turn_no_faster_than_the_threads() {
                 let [a, b] = [a, b].map(|[x, y, z, _]| Vec3::new(x, y, z));
                 let (i, column) = (*particle as usize, *particle as usize % side);
                 // The threads to both sides, and the normal, turn.
-                let ways = [(column > 0, i.wrapping_sub(1)), (column + 1 < side, i + 1)];
-                let threads = ways
+                let beside = [(column > 0, i.wrapping_sub(1)), (column + 1 < side, i + 1)];
+                let threads = beside
                     .into_iter()
                     .filter(|(there, _)| *there)
                     .map(|(_, j)| turned(before.2[j] - before.2[i], now.2[j] - now.2[i]));

@@ -2,7 +2,7 @@
 //!
 //! Cloth is drawn between its last two steps, and so up to a step late; a bone that is animated in each frame is drawn where it is
 //! now. A cape would be seen to lag behind its shoulders by as much. So whoever writes the mesh moves the particles that are
-//! attached rigidly to the places that their points have now, and those around them along, less and less with the way along
+//! attached rigidly to the places that their points have now, and those around them along, less and less with the distance along
 //! the sheet. The simulation knows nothing of it. Where all that holds it was put elsewhere since the last step, the whole cloth is drawn
 //! there.
 //!
@@ -111,7 +111,7 @@ impl ClothDrawnHolds {
         self.offsets.is_empty()
     }
 
-    /// Computes the offsets of a cloth that is drawn at `place`, at a part of the way between the last two steps, 0 to 1.
+    /// Computes the offsets of a cloth that is drawn at `place`, at a part of the time between the last two steps, 0 to 1.
     /// `now` tells where a target is drawn. Targets and cloths that are nowhere move nothing.
     pub fn update(
         &mut self,

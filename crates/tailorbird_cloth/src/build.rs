@@ -164,7 +164,7 @@ impl ClothParticles {
         self.0.state.lost_displacement.fill(Vec3::ZERO);
         self.0.state.grown_about = about;
         self.0.input.held.scale(ratio);
-        self.0.state.calm.clear();
+        self.0.state.mean_position.clear();
         self.0.state.grant.rescale();
         true
     }

@@ -56,7 +56,7 @@ pub struct State {
     /// Additional length that the threads of a strained cloth are granted.
     pub grant: Grant,
     /// Mean positions of blocks of 16 particles over the last quarter of a second \[m\].
-    pub calm: Vec<Vec3>,
+    pub mean_position: Vec<Vec3>,
     /// The point that stayed where it was when the scale changed last \[m\].
     pub grown_about: Vec3,
     /// Contact planes of meshes, which hold the side of an open mesh that each particle is on.
@@ -108,7 +108,7 @@ pub struct Pulled {
     pub particle: Stored,
     /// From the grabbed particle to where this one is pulled, in the cloth's frame \[m\].
     pub offset: Vec3,
-    /// Part of the way there that is gone in a sixtieth of a second, 0 to 1.
+    /// Part of the distance there that is gone in a sixtieth of a second, 0 to 1.
     pub weight: f32,
 }
 
@@ -173,7 +173,7 @@ impl Particles {
                 .iter()
                 .map(MeshPlanes::memory_bytes)
                 .sum::<usize>()
-            + heap(&self.state.calm)
+            + heap(&self.state.mean_position)
             + self.scratch.cache.memory_bytes()
             + self.state.grant.memory_bytes()
     }

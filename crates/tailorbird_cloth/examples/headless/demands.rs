@@ -50,7 +50,7 @@ pub struct Demands {
 
     /// Displacement of the curtain's holder in the scenes pause-move and hop [m].
     #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
-    pub way: f32,
+    pub displacement: f32,
 
     /// Holder of the curtain there.
     #[arg(long, value_enum, default_value_t = Held::Attached)]

@@ -159,14 +159,14 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let way = start.displacement_to(&end);
+            let displacement = start.displacement_to(&end);
             if rest.is_unseen() && step.running() {
                 state.velocity = began.displacement_to(&end) / step.world_seconds();
             }
-            let excess = if unfelt || way == Vec3::ZERO && teleport {
+            let excess = if unfelt || displacement == Vec3::ZERO && teleport {
                 Vec3::ZERO
             } else {
-                excess(state.velocity, way, step.world_seconds()).0
+                excess(state.velocity, displacement, step.world_seconds()).0
             };
             let body = Holder {
                 attachment: attachment.to_bits(),
@@ -175,7 +175,7 @@ pub fn prepare_attachments(
                 end,
                 jumped,
                 excess,
-                told: way == Vec3::ZERO && teleport,
+                told: displacement == Vec3::ZERO && teleport,
                 pulled: Vec3::ZERO,
                 substeps: 0,
             };
@@ -193,8 +193,8 @@ pub fn prepare_attachments(
                     && let Ok((.., mut state, _)) =
                         attachments.get_mut(Entity::from_bits(body.attachment))
                 {
-                    let way = body.start.displacement_to(&body.end);
-                    state.velocity = way / step.world_seconds();
+                    let displacement = body.start.displacement_to(&body.end);
+                    state.velocity = displacement / step.world_seconds();
                 }
             }
             moved = attached.take_along(frame, &mut particles);

@@ -139,9 +139,12 @@ pub fn prepare_motion(
             } else {
                 0.0
             };
-            let way = Vec3::X * furthest;
+            let displacement = Vec3::X * furthest;
             let speed = settings.valid_teleport_speed();
-            elsewhere |= motion.hops.is_hop(way, step.world_seconds(), speed) && fixed;
+            elsewhere |= motion
+                .hops
+                .is_hop(displacement, step.world_seconds(), speed)
+                && fixed;
             if elsewhere && motion.moving {
                 motion.take_along(&mut particles);
                 motion.stay();

@@ -86,8 +86,8 @@ impl Owned {
         }
     }
 
-    fn cloth(&mut self) -> Cloth<'_> {
-        Cloth {
+    fn cloth(&mut self) -> ClothData<'_> {
+        ClothData {
             topology: &self.topology,
             coefficients: &self.coefficients,
             method: Method::Lines,
@@ -145,7 +145,7 @@ fn go(colliders: &Colliders, group: &mut [&mut Owned]) {
     for owned in &mut *group {
         owned.particles.begin_step();
     }
-    let mut cloths: Vec<Cloth> = group.iter_mut().map(|owned| owned.cloth()).collect();
+    let mut cloths: Vec<ClothData> = group.iter_mut().map(|owned| owned.cloth()).collect();
     step(count, nth, colliders, &mut cloths);
 }
 
