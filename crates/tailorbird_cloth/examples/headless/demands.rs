@@ -49,7 +49,7 @@ pub struct Demands {
     pub body: Body,
 
     /// Displacement of the curtain's holder in the scenes pause-move and hop [m].
-    #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
+    #[arg(long = "way", value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
     pub displacement: f32,
 
     /// Holder of the curtain there.
