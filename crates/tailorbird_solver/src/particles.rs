@@ -325,13 +325,9 @@ impl Particles {
 
     /// Kinematic particles that do not move have no velocity.
     pub fn hold_still(&mut self) {
-        let State {
-            position,
-            previous_position,
-            ..
-        } = &mut self.state;
-        for i in self.input.held.particles() {
-            previous_position.set(i as usize, position.get(i as usize));
+        let state = &mut self.state;
+        for i in self.input.held.particles().map(|i| i as usize) {
+            state.previous_position.set(i, state.position.get(i));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use tailorbird_solver::particles::{Input, Particles, State};
+use tailorbird_solver::particles::Particles;
 
 use super::{ClothForces, Impulse};
 use crate::{
@@ -112,27 +112,23 @@ impl ClothParticles {
         let weight =
             |position: Vec3| (1.0 - distance_squared(position) / (radius * radius)).max(0.0);
         self.0.accelerations();
-        let Particles {
-            state: State { position, .. },
-            input:
-                Input {
-                    acceleration,
-                    inv_mass,
-                    ..
-                },
-            ..
-        } = &mut self.0;
+        let Particles { state, input, .. } = &mut self.0;
+        let (position, inv_mass) = (&state.position, &input.inv_mass);
         let free = || (0..inv_mass.len()).filter(|&i| inv_mass[i] > 0.0);
         let total: f32 = free().map(|i| weight(position.get(i))).sum();
         if radius > 0.0 && total > 0.0 {
             for i in free() {
                 let share = weight(position.get(i)) / total;
-                acceleration.add(i, impulse * (share * inv_mass[i] / seconds));
+                input
+                    .acceleration
+                    .add(i, impulse * (share * inv_mass[i] / seconds));
             }
         } else if let Some(nearest) = free().min_by(|&a, &b| {
             distance_squared(position.get(a)).total_cmp(&distance_squared(position.get(b)))
         }) {
-            acceleration.add(nearest, impulse * (inv_mass[nearest] / seconds));
+            input
+                .acceleration
+                .add(nearest, impulse * (inv_mass[nearest] / seconds));
         }
     }
 }

@@ -2,11 +2,7 @@
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
-use tailorbird_solver::{
-    held::HolderKind,
-    memory::heap,
-    particles::{Input, Particles, State},
-};
+use tailorbird_solver::{held::HolderKind, memory::heap, particles::Particles};
 
 use super::{ClothMotionState, ClothMotionTargets, ClothTargetSamples, KEPT, SeenTargets};
 use crate::{
@@ -154,22 +150,16 @@ impl ClothMotionState {
     /// Takes each particle along with its target, where that was put elsewhere.
     pub(super) fn take_along(&self, particles: &mut ClothParticles) {
         let [start, end] = &self.limits.targets;
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    step_position,
-                    ..
-                },
-            input: Input { inv_mass, held, .. },
-            ..
-        } = &mut particles.0;
-        let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
-        let limited = held.of(HolderKind::Limit).iter();
+        let Particles { state, input, .. } = &mut particles.0;
+        let free = (0..state.position.len()).filter(|&i| input.inv_mass[i] > 0.0);
+        let limited = input.held.of(HolderKind::Limit).iter();
         for i in free.chain(limited.map(|held| held.particle as usize)) {
             let way = end.get(i) - start.get(i);
-            for points in [&mut *position, &mut *previous_position, &mut *step_position] {
+            for points in [
+                &mut state.position,
+                &mut state.previous_position,
+                &mut state.step_position,
+            ] {
                 points.add(i, way);
             }
         }

@@ -10,7 +10,7 @@ use tailorbird_solver::{
         breeze::{self, Breeze},
         lanes::SharedPoints,
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     points::Points,
     wind::{WAVES, Wave, WindRegion, sine, strength},
     workers::Workers,
@@ -269,9 +269,16 @@ impl ClothWindState {
         let level = step.level();
         let wind = frame.vector_to_frame(velocity);
         cloth.particles.0.accelerations();
-        let particles = &mut *cloth.particles;
-        let mut per_second = if particles.0.state.substep_seconds > 0.0 {
-            particles.0.state.substep_seconds.recip()
+        let Particles {
+            state,
+            input,
+            scratch,
+            ..
+        } = &mut cloth.particles.0;
+        let (position, inv_mass) = (&state.position, &input.inv_mass);
+        let acceleration = &mut input.acceleration;
+        let mut per_second = if state.substep_seconds > 0.0 {
+            state.substep_seconds.recip()
         } else {
             0.0
         };
@@ -283,11 +290,8 @@ impl ClothWindState {
             let uneven = |(source, whole): &(&Source, bool)| !whole || source.turbulence.is_some();
             let breezes = self.reaching(ball).filter(uneven);
             let breezes = breezes.map(|(source, whole)| source.breeze(frame, whole));
-            let (position, previous) = (
-                &particles.0.state.position,
-                &particles.0.state.previous_position,
-            );
-            let with_air = &mut particles.0.scratch.previous_with_air;
+            let previous = &state.previous_position;
+            let with_air = &mut scratch.previous_with_air;
             if with_air.len() != previous.len() {
                 *with_air = Points::zeroed(previous.len());
             }
@@ -300,28 +304,10 @@ impl ClothWindState {
                 });
             }
         }
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input:
-                Input {
-                    acceleration,
-                    inv_mass,
-                    ..
-                },
-            scratch: Scratch {
-                previous_with_air, ..
-            },
-            ..
-        } = &mut particles.0;
         let previous = if varies {
-            &*previous_with_air
+            &scratch.previous_with_air
         } else {
-            &*previous_position
+            &state.previous_position
         };
         let air = Air {
             wind,

@@ -22,18 +22,23 @@ const MOST_EXCHANGE: f32 = 0.5;
 /// and energy goes with the square of it.
 const DIAGONAL: f32 = 0.25;
 
-/// Constraints of a mesh that is no grid, in storage order.
+/// Constraints of a mesh that is no grid, in storage order. Kernels rely on their indices, so that nobody else writes them.
 #[derive(Clone, Debug, Default)]
 pub struct Fabric {
-    chains: Chains,
+    /// Chains of the edges along the threads.
+    pub(crate) chains: Chains,
     /// Particle of each slot of the chains; the last particle where the chain has ended.
-    particle_or_last: Vec<u32>,
-    /// For each link of a batch, true if its particles lie one after the other.
-    runs: Vec<bool>,
-    shear: Springs,
-    exchanges: Vec<Exchange>,
-    particles: usize,
-    size: f32,
+    pub(crate) particle_or_last: Vec<u32>,
+    /// For each link of a batch ([`LANES`] slots), true if its particles lie one after the other.
+    pub(crate) runs: Vec<bool>,
+    /// Springs of the edges across the threads.
+    pub(crate) shear: Springs,
+    /// Pairs that exchange momentum by viscosity.
+    pub(crate) exchanges: Vec<Exchange>,
+    /// Number of particles; all indices are below.
+    pub(crate) particles: usize,
+    /// Diagonal of the box around the rest shape \[m\].
+    pub(crate) size: f32,
 }
 
 /// Springs in batches that share no particle.
@@ -108,41 +113,6 @@ impl Fabric {
             + heap(&self.runs)
             + self.shear.memory_bytes()
             + heap(&self.exchanges)
-    }
-
-    /// Chains of the edges along the threads.
-    pub fn chains(&self) -> &Chains {
-        &self.chains
-    }
-
-    /// Particle of each slot of the chains; the last particle where the chain has ended.
-    pub fn particle_or_last(&self) -> &[u32] {
-        &self.particle_or_last
-    }
-
-    /// For each link of a batch ([`LANES`] slots), true if its particles lie one after the other.
-    pub fn runs(&self) -> &[bool] {
-        &self.runs
-    }
-
-    /// Springs of the edges across the threads.
-    pub fn shear(&self) -> &Springs {
-        &self.shear
-    }
-
-    /// Pairs that exchange momentum by viscosity.
-    pub fn exchanges(&self) -> &[Exchange] {
-        &self.exchanges
-    }
-
-    /// Number of particles; all indices are below.
-    pub fn particles(&self) -> usize {
-        self.particles
-    }
-
-    /// Diagonal of the box around the rest shape \[m\].
-    pub fn size(&self) -> f32 {
-        self.size
     }
 }
 

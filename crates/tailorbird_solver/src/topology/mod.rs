@@ -290,7 +290,7 @@ impl Topology {
         };
         match &self.layout {
             Layout::Sheet(sheet) => sheet.edges().map(measured).collect(),
-            Layout::Mesh(fabric) => fabric.chains().edges().collect(),
+            Layout::Mesh(fabric) => fabric.chains.edges().collect(),
         }
     }
 
