@@ -9,7 +9,7 @@ use super::{
     ClothExternalCollider, ClothExternalColliders, ClothLayers, check,
 };
 use crate::{
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus, ClothStatusOf},
     frame::split,
     sampling::ClothSampledPoses,
     step::ClothStep,
@@ -100,13 +100,12 @@ pub fn snapshot_colliders(
     mut list: ResMut<ClothColliders>,
     mut external: ResMut<ClothExternalColliders>,
     mut colliders: Query<(
-        Entity,
         &ClothCollider,
         Option<&ClothLayers>,
         &mut ClothColliderState,
-        &mut ClothStatus,
+        ClothStatusOf,
     )>,
-    mut others: Query<&mut ClothStatus, Without<ClothCollider>>,
+    mut others: Query<ClothStatusOf, Without<ClothCollider>>,
     commands: ParallelCommands,
 ) {
     let list = &mut *list;
@@ -114,28 +113,17 @@ pub fn snapshot_colliders(
     list.list.boxes.clear();
     list.list.bodies.clear();
     list.bodies.clear();
-    for (entity, collider, layers, mut pose, mut status) in &mut colliders {
+    for (collider, layers, mut pose, mut status) in &mut colliders {
+        let entity = status.entity;
         let errors = collider.errors();
         let valid = errors.is_empty();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Collider,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Collider, errors);
         let Ok(sampled) = poses.get(entity) else {
             continue;
         };
         let place = split(&sampled.end);
         let error = place.as_ref().err().cloned();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Transform,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Transform, error);
         let (Ok((end, scale)), true) = (place, valid) else {
             continue;
         };
@@ -174,7 +162,7 @@ fn take_external(
     list: &mut ClothColliders,
     external: &mut ClothExternalColliders,
     step: u64,
-    statuses: &mut Query<&mut ClothStatus, Without<ClothCollider>>,
+    statuses: &mut Query<ClothStatusOf, Without<ClothCollider>>,
     commands: &ParallelCommands,
 ) {
     let colliders = &mut external.colliders;
@@ -213,13 +201,7 @@ fn take_external(
         }
         let entity = parts[0].entity;
         if let Ok(mut status) = statuses.get_mut(entity) {
-            ClothStatus::update(
-                &mut status,
-                entity,
-                commands,
-                ClothErrorSource::Collider,
-                errors,
-            );
+            status.update(commands, ClothErrorSource::Collider, errors);
         } else if !errors.is_empty() {
             // They are reported in the next step.
             commands.command_scope(|mut commands| {

@@ -11,7 +11,7 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use thiserror::Error;
 
-pub use status::{ClothErrorSource, ClothStatus};
+pub use status::{ClothErrorSource, ClothStatus, ClothStatusOf, ClothStatusOfItem};
 pub use tailorbird_solver::error::ClothShapeError;
 
 /// Something is wrong with a cloth or a collider.

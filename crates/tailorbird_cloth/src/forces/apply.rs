@@ -7,7 +7,7 @@ use tailorbird_solver::particles::Particles;
 use super::{ClothForces, Impulse};
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf},
     frame::ClothFrame,
     particles::ClothParticles,
     step::ClothStep,
@@ -18,29 +18,22 @@ pub fn apply_forces(
     step: Res<ClothStep>,
     mut cloths: Query<
         (
-            Entity,
             &mut ClothForces,
             &mut ClothParticles,
             &ClothFrame,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut forces, mut particles, frame, mut status) in &mut cloths {
+    for (mut forces, mut particles, frame, mut status) in &mut cloths {
         if particles.is_empty() {
             continue;
         }
         particles.0.input.acceleration.clear();
         if forces.is_empty() {
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Forces,
-                None,
-            );
+            status.update(&commands, ClothErrorSource::Forces, None);
             continue;
         }
         particles.0.state.effort.driven = f32::INFINITY;
@@ -87,13 +80,7 @@ pub fn apply_forces(
             particles.add_impulse(local, step.seconds());
         }
         forces.bypass_change_detection().clear();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Forces,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Forces, errors);
     }
 }
 

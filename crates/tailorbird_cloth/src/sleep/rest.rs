@@ -14,7 +14,7 @@ use crate::{
     bounds::ClothBounds,
     cloth::Cloth,
     collider::{ClothColliders, ClothLayers},
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
@@ -95,7 +95,6 @@ pub fn wake_cloths(
     colliders: Res<ClothColliders>,
     mut cloths: Query<
         (
-            Entity,
             &mut ClothSleepState,
             (
                 Ref<ClothSleep>,
@@ -113,24 +112,18 @@ pub fn wake_cloths(
             ),
             (&ClothFrame, &ClothBounds),
             (Option<&ClothLayers>, Option<&ClothSubsteps>),
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut rest, settings, acting, place, optional, mut status) in &mut cloths {
+    for (mut rest, settings, acting, place, optional, mut status) in &mut cloths {
         let (grab, forces, attached, motion) = acting;
         let (sleep, pins, material, solver, topology, shading) = settings;
         if sleep.is_changed() {
             let errors = sleep.errors();
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Sleep,
-                errors,
-            );
+            status.update(&commands, ClothErrorSource::Sleep, errors);
         }
         if rest.is_unseen() {
             continue;

@@ -21,7 +21,7 @@ use super::{ClothTurbulence, ClothWind, ClothWindModel, ClothWindZone, zone::is_
 use crate::{
     bounds::ClothBounds,
     cloth::Cloth,
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     frame::{ClothFrame, split},
     sampling::ClothSampledPoses,
     stages::{ClothStages, ClothStagesItem, for_each_awake},
@@ -126,7 +126,7 @@ pub fn prepare_wind(
     wind: Res<ClothWind>,
     poses: ClothSampledPoses,
     mut blowing: ResMut<ClothWindState>,
-    mut zones: Query<(Entity, Ref<ClothWindZone>, &mut ClothStatus)>,
+    mut zones: Query<(Ref<ClothWindZone>, ClothStatusOf)>,
     commands: ParallelCommands,
 ) {
     if wind.is_changed() {
@@ -145,30 +145,19 @@ pub fn prepare_wind(
     sources[0].velocity = valid.velocity_at(step.elapsed());
     sources[0].swirl(valid.turbulence, valid.velocity, &step);
     let mut blows = 1;
-    for (entity, zone, mut status) in &mut zones {
+    for (zone, mut status) in &mut zones {
+        let entity = status.entity;
         if zone.is_changed() {
             let errors = zone.errors();
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::ClothWind,
-                errors,
-            );
+            status.update(&commands, ClothErrorSource::ClothWind, errors);
         }
         let Ok(place) = poses.get(entity).map(|pose| split(&pose.end)) else {
             continue;
         };
         let error = place.as_ref().err().cloned();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Transform,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Transform, error);
         let Ok((at, scale)) = place else { continue };
-        if !status.is_ok_for(ClothErrorSource::ClothWind) {
+        if !status.list.is_ok_for(ClothErrorSource::ClothWind) {
             continue;
         }
         let known = sources[blows..]
