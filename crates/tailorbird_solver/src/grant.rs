@@ -12,7 +12,7 @@ use trial::Trial;
 use crate::{
     effort::Effort,
     kernels::{lanes::Shared, lattice::Lengths},
-    memory::heap,
+    memory_bytes,
     points::Points,
     topology::{
         chains::Chains,
@@ -116,6 +116,8 @@ impl Neighborhood {
     }
 }
 
+memory_bytes!(Grant: strain, asked, chains, springs, columns, neighborhoods);
+
 impl Grant {
     /// Returns whether nothing is granted.
     pub fn is_empty(&self) -> bool {
@@ -178,16 +180,6 @@ impl Grant {
         self.chains.clear();
         self.springs.clear();
         self.columns.clear();
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.strain)
-            + heap(&self.asked)
-            + heap(&self.chains)
-            + heap(&self.springs)
-            + heap(&self.columns)
-            + self.neighborhoods.iter().map(heap).sum::<usize>()
     }
 
     /// Grants the demand of a cloth that is asked for more than the fabric has, and takes back what was granted, at the end of a step.

@@ -27,19 +27,11 @@ pub struct MotionLimits {
     pub normals: [Points; 2],
 }
 
-impl MotionLimits {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let points = self.targets.iter().chain(&self.normals);
-        let numbers = [
-            &self.max_distance,
-            &self.backstop_distance,
-            &self.backstop_radius,
-        ];
-        points.map(Points::memory_bytes).sum::<usize>()
-            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
-    }
+crate::memory_bytes!(
+    MotionLimits: max_distance, backstop_distance, backstop_radius, targets, normals
+);
 
+impl MotionLimits {
     /// Moves particles that are held at their targets on by one substep.
     pub fn advance(&self, substep: &Substep, particles: &mut Particles) {
         let Particles { state, input, .. } = particles;

@@ -6,7 +6,6 @@ use fearless_simd::Level;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
-    memory::heap,
     numbers::Numbers,
     points::Points,
     topology::Topology,
@@ -152,12 +151,9 @@ pub fn prepare_motion(
     }
 }
 
-impl ClothMotionState {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.limits.memory_bytes() + heap(&self.held)
-    }
+tailorbird_solver::memory_bytes!(ClothMotionState: limits, held);
 
+impl ClothMotionState {
     /// Returns whether the targets move, however slowly.
     pub(crate) fn is_led(&self) -> bool {
         self.furthest > STANDS

@@ -2,7 +2,7 @@
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
-use tailorbird_solver::{held::HolderKind, memory::heap, particles::Particles};
+use tailorbird_solver::{held::HolderKind, particles::Particles};
 
 use super::{ClothMotionState, ClothMotionTargets, ClothTargetSamples, KEPT, SeenTargets};
 use crate::{
@@ -39,16 +39,10 @@ impl TargetsAt<'_> {
     }
 }
 
-impl ClothTargetSamples {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let lists = self
-            .seen
-            .iter()
-            .flat_map(|seen| [&seen.positions, &seen.normals]);
-        lists.map(heap).sum()
-    }
+tailorbird_solver::memory_bytes!(SeenTargets: positions, normals);
+tailorbird_solver::memory_bytes!(ClothTargetSamples: seen);
 
+impl ClothTargetSamples {
     /// Returns whether the targets were put elsewhere since the last call.
     pub(super) fn take_jump(&mut self) -> bool {
         std::mem::take(&mut self.jumped)

@@ -10,7 +10,7 @@ use super::{
     mesh_edges::MeshEdges,
     weave::{EdgeFamily, Weave},
 };
-use crate::memory::heap;
+use crate::memory_bytes;
 
 /// Weight below which an edge has no flow across it: such is the diagonal of a right-angled cell.
 const LEAST_WEIGHT: f32 = 1e-3;
@@ -67,6 +67,9 @@ pub struct Exchange {
     pub limit: f32,
 }
 
+memory_bytes!(Fabric: chains, particle_or_last, runs, shear, exchanges);
+memory_bytes!(Springs: ends, rest_length, scale, along_warp, batches);
+
 impl Fabric {
     /// Fabric of a mesh whose particles, `chains` and `weave` are in storage order.
     pub(super) fn new(
@@ -105,26 +108,9 @@ impl Fabric {
         }
         fabric
     }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.chains.memory_bytes()
-            + heap(&self.particle_or_last)
-            + heap(&self.runs)
-            + self.shear.memory_bytes()
-            + heap(&self.exchanges)
-    }
 }
 
 impl Springs {
-    fn memory_bytes(&self) -> usize {
-        heap(&self.ends)
-            + heap(&self.rest_length)
-            + heap(&self.scale)
-            + heap(&self.along_warp)
-            + heap(&self.batches)
-    }
-
     fn new(rest_positions: &[Vec3], weave: &Weave) -> Self {
         let edges: Vec<usize> = (0..weave.ends.len())
             .filter(|edge| weave.family[*edge] == EdgeFamily::Shear)

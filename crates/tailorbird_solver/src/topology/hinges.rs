@@ -33,7 +33,7 @@ use std::ops::Range;
 use bevy_math::{DVec3, Vec3};
 
 use super::{coloring::color_in_blocks, mesh_edges::MOST_SIDES};
-use crate::memory::heap;
+use crate::memory_bytes;
 
 /// Ratio of a triangle's area to the square of its longest edge below which it has no hinges.
 const DEGENERATE: f64 = 1e-6;
@@ -72,6 +72,8 @@ struct Hinge {
     area: f32,
     rest_length: f32,
 }
+
+memory_bytes!(HingeConstraints: particles, coefficients, areas, rest_lengths, batches);
 
 impl HingeConstraints {
     /// Hinges of a mesh: one for each edge of two triangles that are not degenerate. At an edge of up to eight triangles the two that lie
@@ -117,15 +119,6 @@ impl HingeConstraints {
     /// The number of hinges.
     pub fn len(&self) -> usize {
         self.particles.len()
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.particles)
-            + heap(&self.coefficients)
-            + heap(&self.areas)
-            + heap(&self.rest_lengths)
-            + heap(&self.batches)
     }
 
     /// Returns whether there are none.

@@ -32,7 +32,7 @@ use bevy_math::{UVec2, Vec3};
 
 use crate::{
     error::ClothShapeError,
-    memory::heap,
+    memory_bytes,
     shape::{ClothShape, check_positions},
 };
 use constraints::DistanceConstraints;
@@ -91,6 +91,11 @@ pub struct Topology {
     /// Findings in a mesh; empty for a grid.
     pub report: ClothMeshReport,
 }
+
+memory_bytes!(
+    Topology: order, rest_positions, layout, hinges, triangles, source_triangles, turned, copies, particle_of_vertex, triangle_areas,
+    areas, origins, constraints, neighbors, dropped, report.islands
+);
 
 impl Topology {
     /// Builds the topology of a shape that is scaled by `scale`.
@@ -257,29 +262,6 @@ impl Topology {
             .neighbors
             .get_or_init(|| edges::neighbors(&self.triangles, &self.rest_positions));
         Neighbors::Listed(lists.of(particle))
-    }
-
-    /// Memory on the heap by now \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.rest_positions)
-            + heap(&self.triangles)
-            + heap(&self.source_triangles)
-            + heap(&self.particle_of_vertex)
-            + heap(&self.triangle_areas)
-            + heap(&self.areas)
-            + heap(&self.origins)
-            + self.layout.memory_bytes()
-            + heap(&self.dropped)
-            + heap(&self.turned)
-            + heap(&self.copies)
-            + heap(&self.report.islands)
-            + self.order.memory_bytes()
-            + self.hinges.memory_bytes()
-            + self
-                .constraints
-                .get()
-                .map_or(0, DistanceConstraints::memory_bytes)
-            + self.neighbors.get().map_or(0, NeighborLists::memory_bytes)
     }
 
     /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 use super::{alive::Family, layout::SheetLayout};
-use crate::memory::heap;
+use crate::memory_bytes;
 
 /// Particles that are joined to a particle by an edge or a diagonal.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +65,8 @@ pub(super) struct NeighborLists {
     particles: Vec<u32>,
 }
 
+memory_bytes!(NeighborLists: offsets, particles);
+
 impl NeighborLists {
     pub(super) fn new(particles: usize, edges: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
         let mut offsets = vec![0u32; particles + 1];
@@ -96,10 +98,6 @@ impl NeighborLists {
             (Some(&start), Some(&end)) => &self.particles[start as usize..end as usize],
             _ => &[],
         }
-    }
-
-    pub(super) fn memory_bytes(&self) -> usize {
-        heap(&self.offsets) + heap(&self.particles)
     }
 }
 
