@@ -9,12 +9,11 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    collider::ClothColliders,
     error::{ClothErrorSource, ClothStatusOf},
     inertia::ClothInertia,
     particles::ClothParticles,
     sampling::{ClothSampledMotion, ClothSampledPoses},
-    stages::{ClothStages, run_stage},
+    stages::StagedCloths,
     step::ClothStep,
 };
 
@@ -79,9 +78,6 @@ pub fn prepare_frames(
 
 /// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
 /// target.
-pub fn advance_frames(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(ADVANCE, &step, &colliders, &mut cloths);
+pub fn advance_frames(mut cloths: StagedCloths) {
+    cloths.run(ADVANCE);
 }

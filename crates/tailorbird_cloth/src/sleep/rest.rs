@@ -23,7 +23,7 @@ use crate::{
     normals::ClothShading,
     pins::ClothPins,
     solver::{ClothSolver, ClothSubsteps},
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    stages::{ClothStagesItem, StagedCloths},
     step::ClothStep,
     topology::ClothTopology,
     wind::ClothWindState,
@@ -163,26 +163,13 @@ pub fn wake_cloths(
 }
 
 /// Measures how long the cloths have been at rest, and lets them settle.
-pub fn settle_cloths(
-    step: Res<ClothStep>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.settle(&step, &colliders);
-    });
+pub fn settle_cloths(mut cloths: StagedCloths) {
+    cloths.for_each_awake(&|mut cloth, step, colliders| cloth.settle(step, colliders));
 }
 
 /// Lets the cloths fall asleep that have been at rest for long enough.
-pub fn rest_cloths(
-    step: Res<ClothStep>,
-    wind: Res<ClothWindState>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.rest(&step, &wind, &colliders);
-    });
+pub fn rest_cloths(mut cloths: StagedCloths, wind: Res<ClothWindState>) {
+    cloths.for_each_awake(&|mut cloth, step, colliders| cloth.rest(step, &wind, colliders));
 }
 
 impl ClothStagesItem<'_, '_> {

@@ -20,11 +20,10 @@ use tracing::error;
 use super::{ClothTurbulence, ClothWind, ClothWindModel, ClothWindZone, zone::is_whole_in};
 use crate::{
     bounds::ClothBounds,
-    cloth::Cloth,
     error::{ClothErrorSource, ClothStatusOf},
     frame::{ClothFrame, split},
     sampling::ClothSampledPoses,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    stages::{ClothStagesItem, StagedCloths},
     step::ClothStep,
 };
 
@@ -182,14 +181,8 @@ pub fn prepare_wind(
 }
 
 /// Adds the acceleration by the wind, once per step.
-pub fn apply_wind(
-    step: Res<ClothStep>,
-    wind: Res<ClothWindState>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        wind.blow(&step, Workers::ALONE, &mut cloth);
-    });
+pub fn apply_wind(mut cloths: StagedCloths, wind: Res<ClothWindState>) {
+    cloths.for_each_awake(&|mut cloth, step, _| wind.blow(step, Workers::ALONE, &mut cloth));
 }
 
 /// The ball around a cloth's box: middle and radius in the world \[m\].
