@@ -54,12 +54,11 @@ fn around(
 ) -> Surroundings {
     let mut hasher = DefaultHasher::new();
     let room = ROOM + material.margin().max(0.0);
-    for collider in colliders.list.near(
-        frame,
-        bounds.bounds(),
+    let (all, layers) = (
+        &colliders.list,
         layers.copied().unwrap_or_default().layers(),
-        room,
-    ) {
+    );
+    for collider in all.near(frame, (bounds.min, bounds.max), layers, room) {
         collider.hash(&mut hasher);
     }
     Surroundings {

@@ -1,10 +1,9 @@
 //! The air during a step: what blows, and what it does to cloths.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Isometry3d, Vec3};
 use tailorbird_solver::{
+    fingerprint,
     kernels::{
         aerodynamics::{self, Air, AirSheet},
         breeze::{self, Breeze},
@@ -92,27 +91,21 @@ impl Source {
         strength * (self.velocity + self.at.rotation * swirl)
     }
 
-    fn hash(&self, hasher: &mut impl Hasher) {
-        let numbers = |hasher: &mut _, list: &[f32]| {
-            for number in list {
-                number.to_bits().hash(hasher);
-            }
-        };
-        numbers(hasher, &self.velocity.to_array());
-        numbers(hasher, &Vec3::from(self.at.translation).to_array());
-        numbers(hasher, &self.at.rotation.to_array());
+    /// Bits of all that a cloth feels of it.
+    fn bits(&self) -> impl Iterator<Item = u32> {
         let size = match self.shape {
             WindRegion::Everywhere => Vec3::ZERO,
             WindRegion::Cuboid { half_size } => half_size,
             WindRegion::Sphere { radius } => Vec3::splat(-radius),
         };
-        numbers(hasher, &size.to_array());
         let ClothTurbulence { speed, scale, seed } = self.turbulence;
-        numbers(hasher, &[self.falloff, speed, scale]);
-        seed.hash(hasher);
-        if self.turbulence.is_some() {
-            numbers(hasher, &self.waves.map(|wave| wave.phase));
-        }
+        let waves = self.waves.iter().filter(|_| self.turbulence.is_some());
+        let vectors = [self.velocity, self.at.translation.into(), size];
+        let numbers = (vectors.into_iter().flat_map(|v| v.to_array()))
+            .chain(self.at.rotation.to_array())
+            .chain([self.falloff, speed, scale])
+            .chain(waves.map(|wave| wave.phase));
+        numbers.map(f32::to_bits).chain([seed])
     }
 }
 
@@ -210,13 +203,10 @@ impl ClothWindState {
 
     /// Number that tells the air around a cloth from another.
     pub(crate) fn kind(&self, frame: &ClothFrame, bounds: &ClothBounds) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        self.valid.model.hash(&mut hasher);
-        self.valid.air_density.to_bits().hash(&mut hasher);
-        for (source, _) in self.reaching(ball(frame, bounds)) {
-            source.hash(&mut hasher);
-        }
-        hasher.finish()
+        let air = [self.valid.model as u32, self.valid.air_density.to_bits()];
+        let sources = self.reaching(ball(frame, bounds));
+        let sources = sources.flat_map(|(source, _)| source.bits());
+        fingerprint::of(air.into_iter().chain(sources))
     }
 
     /// Runs [`apply_wind`] for one cloth.

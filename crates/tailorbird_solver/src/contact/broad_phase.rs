@@ -7,7 +7,6 @@ use fearless_simd::Level;
 
 use super::solid::{Solid, swept};
 use crate::{
-    bounds::Bounds,
     contact::{
         cache::ContactCache,
         colliders::{Colliders, Layers, MovingCollider},
@@ -148,7 +147,7 @@ impl Colliders {
     pub fn near(
         &self,
         frame: &Frame,
-        bounds: Bounds,
+        bounds: (Vec3, Vec3),
         layers: Layers,
         room: f32,
     ) -> impl Iterator<Item = impl Hash> {
@@ -171,7 +170,7 @@ impl Colliders {
 
 impl MovingCollider {
     /// Returns whether it may come within `room` \[m\] of a cloth's box.
-    fn reaches(&self, frame: &Frame, bounds: Bounds, room: f32) -> bool {
+    fn reaches(&self, frame: &Frame, bounds: (Vec3, Vec3), room: f32) -> bool {
         let frame = frame.isometry().inverse();
         let [start, end] = [self.start, self.end].map(|at| frame * at);
         let room = room + self.margin;
@@ -179,11 +178,11 @@ impl MovingCollider {
             Some(range) => {
                 let (low, high) = swept(range, &start, &end);
                 let room = Vec3::splat(room);
-                overlap((low - room, high + room), (bounds.min, bounds.max))
+                overlap((low - room, high + room), bounds)
             }
             None => [start, end].iter().any(|at| {
                 let normal = at.rotation * Vec3::Y;
-                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.min, bounds.max);
+                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.0, bounds.1);
                 normal.dot(lowest - Vec3::from(at.translation)) <= room
             }),
         }
