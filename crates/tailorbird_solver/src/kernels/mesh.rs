@@ -11,8 +11,8 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     edges::{MeshLines, Whole},
-    lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
-    lattice::{Block, for_few},
+    lanes::{Shared, SharedPoints, V3, WIDEST, for_few, with_scratch},
+    lattice::Block,
     line,
     lines::{FREE, Give, Lines, NO_MASS, PRESSED, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
@@ -56,11 +56,10 @@ impl Mesh<'_> {
     fn check(&self) {
         let n = self.fabric.particles;
         // Particles that are split off follow those of the mesh.
-        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         assert!(
-            points(self.position)
+            self.position.has(n)
                 && self.inv_mass.len() >= n
-                && self.normal.is_none_or(points)
+                && self.normal.is_none_or(|normal| normal.has(n))
                 && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.rest_length.len() == self.fabric.chains.particle.len(),
             "a mesh of {n} particles"

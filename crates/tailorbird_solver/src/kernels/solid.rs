@@ -12,7 +12,7 @@ use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
     contact::{Touching, unit},
-    lanes::{V3, Window, each_window},
+    lanes::{V3, Window, each_window, for_few},
 };
 
 /// Number of planes that a long path is followed by.
@@ -186,22 +186,7 @@ pub fn collide_all<Q: Solid>(
     if Q::COMMON {
         return dispatch!(level, simd => collide_all_with(simd, solid, motion, particles, range));
     }
-    // Two instruction sets only: there are many solids, and each takes long to compile.
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    let level = level.as_avx2().map_or(Level::fallback(), Level::Avx2);
-    match level {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(simd) => simd.vectorize(
-            #[inline(always)]
-            || collide_all_with(simd, solid, motion, particles, range),
-        ),
-        #[cfg(target_arch = "aarch64")]
-        Level::Neon(simd) => simd.vectorize(
-            #[inline(always)]
-            || collide_all_with(simd, solid, motion, particles, range),
-        ),
-        _ => collide_all_with(Fallback::new(), solid, motion, particles, range),
-    }
+    for_few!(level, simd => collide_all_with(simd, solid, motion, particles, range))
 }
 
 #[inline(always)]
