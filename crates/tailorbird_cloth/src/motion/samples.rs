@@ -59,7 +59,7 @@ impl ClothTargetSamples {
         targets: &Ref<ClothMotionTargets>,
         clock: &ClothFrameClock,
     ) {
-        if clock.is_looping() {
+        if clock.looping {
             self.fixed = self.fixed.saturating_sub(1);
             self.note_moves(targets.last_changed());
         } else {
@@ -80,10 +80,10 @@ impl ClothTargetSamples {
         clock: &ClothFrameClock,
         particles: usize,
     ) -> TargetsAt<'a> {
-        let moment = clock.moment();
+        let moment = clock.moment;
         let known = &self.seen[..self.known];
         let ago = |frames: usize| {
-            let number = clock.seen().saturating_sub(frames as u64);
+            let number = clock.seen.saturating_sub(frames as u64);
             let found = known.iter().find(|seen| seen.number <= number);
             found.or(known.last())
         };
@@ -169,8 +169,8 @@ pub(crate) fn see_targets(
     let speed = settings.valid_teleport_speed();
     for (targets, mut samples) in &mut cloths {
         let samples = &mut *samples;
-        let missed = samples.frame + 1 != clock.frame();
-        samples.frame = clock.frame();
+        let missed = samples.frame + 1 != clock.frame;
+        samples.frame = clock.frame;
         let changed = samples.changed.replace(targets.last_changed());
         let changed = changed != Some(targets.last_changed());
         let finite = |points: &[Vec3]| points.iter().all(|p| p.is_finite());
@@ -180,7 +180,7 @@ pub(crate) fn see_targets(
             continue;
         }
         let alike = samples.seen[0].positions.len() == targets.positions.len();
-        let elsewhere = match clock.kind() {
+        let elsewhere = match clock.kind {
             _ if missed || samples.known == 0 || !alike => true,
             _ if !changed && samples.hops.velocity() == Vec3::ZERO => continue,
             FrameKind::First => true,
@@ -193,7 +193,7 @@ pub(crate) fn see_targets(
             }
         };
         if changed || elsewhere {
-            samples.see(&targets, clock.seen(), elsewhere);
+            samples.see(&targets, clock.seen, elsewhere);
             samples.jumped |= elsewhere;
         }
     }

@@ -156,7 +156,7 @@ impl ClothSampledMotion {
         take_along(&mut self.now, way);
     }
 
-    /// Motion from one frame to the next, without that of the fixed loop.
+    /// Second of two places, with that of the first where the fixed loop moves the entity.
     fn moved_between(&self, [from, to]: [&Transform; 2]) -> Transform {
         let [translation, rotation, scale] = self.fixed.map(|steps| steps > 0);
         Transform {

@@ -181,23 +181,14 @@ pub(crate) fn sample_motion(
         } else {
             motion.fixed = [LAPSE; 3];
         }
-        let mut now = between(&motion.frames, &moment);
-        let [translation, rotation, scale] = motion.fixed.map(|steps| steps > 0);
-        if translation {
-            now.translation = place.translation;
-        }
-        if rotation {
-            now.rotation = place.rotation;
-        }
-        if scale {
-            now.scale = place.scale;
-        }
+        let sampled = between(&motion.frames, &moment);
+        let mut now = motion.moved_between([place, &sampled]);
         let told = std::mem::take(&mut motion.asked);
         if told {
             now = *place;
             motion.from = now;
             motion.frames = [now; DEPTH];
-        } else if translation {
+        } else if motion.fixed[0] > 0 {
             let from = motion.from;
             let metre = metre_of(
                 parent.filter(|_| from.translation != now.translation),
