@@ -15,52 +15,38 @@ use crate::{
     step::ClothStep,
 };
 
-/// Common properties of all parts of a collider.
-struct Whole<'a> {
-    step: u64,
-    entity: Entity,
-    part: u32,
-    scale: Vec3,
-    shape: &'a ClothColliderShape,
-    friction: f32,
-    margin: f32,
-    layers: ClothLayers,
-    start: Isometry3d,
-    end: Isometry3d,
-    body: Option<usize>,
-}
-
 impl ClothColliders {
-    fn add(&mut self, whole: &Whole) {
-        if let ClothColliderShape::Compound(compound) = whole.shape {
+    /// Adds the parts of a collider at this scale.
+    fn add(&mut self, step: u64, scale: Vec3, whole: &ClothExternalCollider) {
+        let body = whole.body.as_ref().map(|body| self.body(body));
+        let mut add = |part: u32, shape: &ClothColliderShape, at: Isometry3d| {
+            let (rotation, scale) = scaled_axes(scale, at.rotation);
+            let at = Isometry3d::new(at.translation, rotation);
+            let Some(solid) = self.solids.scaled(step, shape, scale) else {
+                return;
+            };
+            self.list.colliders.push(MovingCollider {
+                id: ColliderId {
+                    owner: whole.entity.to_bits(),
+                    part: (whole.part, part),
+                },
+                solid,
+                friction: whole.friction,
+                margin: whole.margin,
+                layers: whole.layers.layers(),
+                start: whole.start * at,
+                end: whole.end * at,
+                body,
+            });
+        };
+        if let ClothColliderShape::Compound(compound) = &whole.shape {
             for (k, (at, shape)) in compound.parts().iter().enumerate() {
-                let place = Isometry3d::new(Vec3::from(at.translation) * whole.scale, at.rotation);
-                self.add_part(whole, k as u32, shape, place);
+                let place = Isometry3d::new(Vec3::from(at.translation) * scale, at.rotation);
+                add(k as u32, shape, place);
             }
         } else {
-            self.add_part(whole, 0, whole.shape, Isometry3d::IDENTITY);
+            add(0, &whole.shape, Isometry3d::IDENTITY);
         }
-    }
-
-    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ClothColliderShape, at: Isometry3d) {
-        let (rotation, scale) = scaled_axes(whole.scale, at.rotation);
-        let at = Isometry3d::new(at.translation, rotation);
-        let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
-            return;
-        };
-        self.list.colliders.push(MovingCollider {
-            id: ColliderId {
-                owner: whole.entity.to_bits(),
-                part: (whole.part, part),
-            },
-            solid,
-            friction: whole.friction,
-            margin: whole.margin,
-            layers: whole.layers.layers(),
-            start: whole.start * at,
-            end: whole.end * at,
-            body: whole.body,
-        });
     }
 
     /// The place of a body in the list of bodies.
@@ -129,19 +115,18 @@ pub fn snapshot_colliders(
         };
         let scale = pose.settle(scale);
         let start = split(&sampled.start).map_or(end, |(start, _)| start);
-        list.add(&Whole {
-            step: step.steps(),
+        let whole = ClothExternalCollider {
             entity,
             part: 0,
-            scale,
-            shape: &collider.shape,
+            shape: collider.shape.clone(),
             friction: collider.friction,
             margin: collider.margin,
             layers: layers.copied().unwrap_or_default(),
             start,
             end,
             body: None,
-        });
+        };
+        list.add(step.steps(), scale, &whole);
     }
     take_external(list, &mut external, step.steps(), &mut others, &commands);
     // The order in which they are solved must not depend on how entities are stored.
@@ -181,23 +166,9 @@ fn take_external(
         for collider in parts {
             let before = errors.len();
             errors.extend(external_errors(collider));
-            if errors.len() > before {
-                continue;
+            if errors.len() == before {
+                list.add(step, Vec3::ONE, collider);
             }
-            let body = collider.body.as_ref().map(|body| list.body(body));
-            list.add(&Whole {
-                step,
-                entity: collider.entity,
-                part: collider.part,
-                scale: Vec3::ONE,
-                shape: &collider.shape,
-                friction: collider.friction,
-                margin: collider.margin,
-                layers: collider.layers,
-                start: collider.start,
-                end: collider.end,
-                body,
-            });
         }
         let entity = parts[0].entity;
         if let Ok(mut status) = statuses.get_mut(entity) {
