@@ -9,6 +9,7 @@ pub mod edges;
 pub mod fabric;
 pub mod geodesic;
 pub mod grid;
+mod groups;
 pub mod hinges;
 pub mod lattice;
 pub mod layout;
@@ -37,10 +38,11 @@ use crate::{
 };
 use constraints::DistanceConstraints;
 use fabric::Fabric;
+use groups::Groups;
 use hinges::HingeConstraints;
 use lattice::Lattice;
 use layout::Layout;
-use neighbors::{NeighborLists, Neighbors};
+use neighbors::Neighbors;
 use order::ParticleOrder;
 use repair::TriangleCopy;
 use report::ClothMeshReport;
@@ -85,7 +87,7 @@ pub struct Topology {
     /// Made when they are asked for.
     constraints: OnceLock<DistanceConstraints>,
     /// Made when they are asked for; never for a lattice.
-    neighbors: OnceLock<NeighborLists>,
+    neighbors: OnceLock<Groups>,
     /// Errors of the parts that were left out.
     pub dropped: Vec<ClothShapeError>,
     /// Findings in a mesh; empty for a grid.
