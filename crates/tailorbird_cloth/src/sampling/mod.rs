@@ -85,8 +85,7 @@ pub use hop::{ClothHopDetector, ClothMotionTeleported};
 pub use poses::ClothSampledPoses;
 pub(crate) use poses::SampledPose;
 pub(crate) use sample::{
-    FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step, pass_on_teleports,
-    sample_motion, sample_parents, see_frame,
+    begin_fixed_step, end_fixed_step, pass_on_teleports, sample_motion, sample_parents, see_frame,
 };
 
 /// Number of steps without motion by the fixed loop after which an entity counts as moved between frames.

@@ -1,6 +1,6 @@
 //! Looks where things are, at the start of each frame and at both ends of each step.
 
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
 use bevy_transform::{components::Transform, helper::TransformHelper};
 
@@ -9,14 +9,6 @@ use super::{
     curve::between,
 };
 use crate::{frame::ClothFrame, settings::ClothSettings, step::ClothStep};
-
-/// Runs when each step of the fixed loop begins, before all that moves things in it.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopBegins;
-
-/// Runs when each step of the fixed loop ends.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopEnds;
 
 /// Puts [`ClothSampledMotion`] on the parents of what has it.
 pub(crate) fn sample_parents(
