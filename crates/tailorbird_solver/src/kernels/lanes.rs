@@ -341,6 +341,20 @@ impl Points {
     }
 }
 
+/// Calls `f` for the lanes that a mask names.
+#[inline(always)]
+pub fn each_lane<S: Simd>(simd: S, mask: S::mask32s, mut f: impl FnMut(usize)) {
+    if mask.any_true() {
+        let [zero, one] = [0.0, 1.0].map(|value| S::f32s::splat(simd, value));
+        let named = mask.select(one, zero);
+        for (k, lane) in named.as_slice().iter().enumerate() {
+            if *lane != 0.0 {
+                f(k);
+            }
+        }
+    }
+}
+
 /// Calls a kernel for two instruction sets only: there are many that few cloths need, and each instruction set takes long to compile.
 macro_rules! for_few {
     ($level:expr, $simd:ident => $do:expr) => {{

@@ -12,7 +12,7 @@ use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
     contact::{Touching, unit},
-    lanes::{V3, Window, each_window, for_few},
+    lanes::{V3, Window, each_lane, each_window, for_few},
 };
 
 /// Number of planes that a long path is followed by.
@@ -312,7 +312,6 @@ fn find_with<S: Simd, Q: Solid>(
     mut found: impl FnMut(usize),
 ) {
     let zero = S::f32s::splat(simd, 0.0);
-    let one = S::f32s::splat(simd, 1.0);
     let (from, to) = (V3::splat(simd, motion.from), V3::splat(simd, motion.to));
     let inverse = motion.axes.transpose();
     each_window(
@@ -330,14 +329,7 @@ fn find_with<S: Simd, Q: Solid>(
             ];
             let near = meet(simd, solid, window, local, free);
             let touching = free & near.distance.simd_lt(zero);
-            if touching.any_true() {
-                let lanes = touching.select(one, zero);
-                for (k, lane) in lanes.as_slice().iter().enumerate() {
-                    if *lane != 0.0 {
-                        found(window.at + k);
-                    }
-                }
-            }
+            each_lane(simd, touching, |k| found(window.at + k));
         },
     );
 }
