@@ -266,6 +266,11 @@ impl Topology {
         Neighbors::Listed(lists.of(particle))
     }
 
+    /// For each particle the piece that it belongs to: the lowest particle that triangles join it to.
+    pub fn pieces(&self) -> Vec<u32> {
+        pieces::pieces(self.particles(), self.triangles().iter())
+    }
+
     /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.
     pub fn stretch_edges(&self) -> Vec<([u32; 2], f32)> {
         let measured = |[a, b]: [u32; 2]| {

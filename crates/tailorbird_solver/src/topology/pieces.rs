@@ -1,14 +1,5 @@
 //! Pieces: particles that hang together.
 
-use super::Topology;
-
-impl Topology {
-    /// For each particle the piece that it belongs to: the lowest particle that triangles join it to.
-    pub fn pieces(&self) -> Vec<u32> {
-        pieces(self.particles(), self.triangles().iter())
-    }
-}
-
 /// For each of so many particles the lowest one that triangles join it to (union–find with path halving).
 pub(super) fn pieces(particles: usize, triangles: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..particles as u32).collect();
