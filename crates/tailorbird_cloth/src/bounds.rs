@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use fearless_simd::Level;
-use tailorbird_solver::bounds::Bounds;
+use tailorbird_solver::kernels::range::bounds;
 
 pub use update::update_bounds;
 
@@ -29,18 +29,12 @@ impl ClothBounds {
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
-}
 
-impl ClothBounds {
     /// Box around all particles, now and a step ago; `None` without particles.
     pub(crate) fn around(level: Level, particles: &ClothParticles) -> Option<Self> {
-        let Bounds { min, max } = Bounds::around(level, particles)?;
+        let (state, all) = (&particles.0.state, 0..particles.len());
+        let times = [&state.position, &state.step_position];
+        let (min, max) = (!all.is_empty()).then(|| bounds(level, times, all))?;
         Some(Self { min, max })
-    }
-
-    /// Box in the form of the solver.
-    pub(crate) fn bounds(self) -> Bounds {
-        let Self { min, max } = self;
-        Bounds { min, max }
     }
 }

@@ -17,7 +17,7 @@ use tracing::warn;
 use crate::{
     attachment::ClothAttachedParticles,
     cloth::{Cloth, ClothShape},
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf, ClothStatusOfItem},
     frame::ClothFrame,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -51,27 +51,26 @@ impl SharedTopologies {
 /// A shape that is wrong is reported, and the cloth stays what it was: one that was never valid has no particles.
 pub fn build_topology(
     mut cloths: Query<(
-        Entity,
         Ref<Cloth>,
         &ClothFrame,
         &mut ClothTopology,
         &ClothAttachedParticles,
         &mut ClothParticles,
-        &mut ClothStatus,
+        ClothStatusOf,
     )>,
     mut shared: Local<SharedTopologies>,
     commands: ParallelCommands,
 ) {
     let mut built = false;
-    for (entity, cloth, frame, mut topology, attached, mut particles, mut status) in &mut cloths {
+    for (cloth, frame, mut topology, attached, mut particles, mut status) in &mut cloths {
         let outdated = topology.revision == 0 || topology.scale != frame.scale();
-        let failed_before = !status.is_ok_for(ClothErrorSource::Shape) && !cloth.is_changed();
+        let failed_before = !status.list.is_ok_for(ClothErrorSource::Shape) && !cloth.is_changed();
         if !frame.placed || !(cloth.is_changed() || outdated && !failed_before) {
             continue;
         }
         match shared.get(&cloth.shape, frame.scale()) {
             Ok(new) if new.revision == topology.revision => {
-                tell_dropped(&mut status, entity, &commands, &new);
+                tell_dropped(&mut status, &commands, &new);
             }
             Ok(new) => {
                 built = true;
@@ -80,19 +79,13 @@ pub fn build_topology(
                         .unwrap_or_else(|| ClothParticles::at_rest(&new));
                 }
                 if !new.report.is_clean() {
-                    warn!("{entity}: {}", new.report);
+                    warn!("{}: {}", status.entity, new.report);
                 }
-                tell_dropped(&mut status, entity, &commands, &new);
+                tell_dropped(&mut status, &commands, &new);
                 topology.0 = new;
             }
             Err(error) => {
-                ClothStatus::update(
-                    &mut status,
-                    entity,
-                    &commands,
-                    ClothErrorSource::Shape,
-                    [error],
-                );
+                status.update(&commands, ClothErrorSource::Shape, [error]);
             }
         }
     }
@@ -102,16 +95,11 @@ pub fn build_topology(
 }
 
 /// Tells of a valid shape which parts of it are left out. What was wrong with the state of another one is over.
-fn tell_dropped(
-    status: &mut Mut<ClothStatus>,
-    entity: Entity,
-    commands: &ParallelCommands,
-    topology: &Topology,
-) {
+fn tell_dropped(status: &mut ClothStatusOfItem, commands: &ParallelCommands, topology: &Topology) {
     let dropped = topology.dropped.iter().cloned();
     let dropped: Vec<_> = dropped.map(ClothErrorKind::from).collect();
-    ClothStatus::update(status, entity, commands, ClothErrorSource::Shape, dropped);
-    ClothStatus::update(status, entity, commands, ClothErrorSource::State, None);
+    status.update(commands, ClothErrorSource::Shape, dropped);
+    status.update(commands, ClothErrorSource::State, None);
 }
 
 impl ClothParticles {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{DVec3, Vec3};
 use bevy_reflect::prelude::*;
 use tailorbird_solver::{topology::Topology, wall_clock::WallClock};
 
@@ -47,20 +47,14 @@ pub struct ClothStretch {
 impl ClothParticles {
     /// Stretch of the edges. Zero for a cloth without edges.
     pub fn stretch(&self, topology: &Topology) -> ClothStretch {
-        let mut values: Vec<f32> = topology
-            .stretch_edges()
-            .into_iter()
-            .filter(|([a, b], rest)| (a.max(b).to_owned() as usize) < self.len() && *rest > 0.0)
-            .map(|([a, b], rest)| {
-                let length = self
-                    .0
-                    .state
-                    .position
-                    .get(a as usize)
-                    .distance(self.0.state.position.get(b as usize));
-                (length / rest - 1.0).max(0.0)
-            })
-            .collect();
+        let position = &self.0.state.position;
+        let edges = topology.stretch_edges().into_iter();
+        let known = edges.filter(|([a, b], rest)| (*a.max(b) as usize) < self.len() && *rest > 0.0);
+        let stretch = known.map(|(ends, rest)| {
+            let [a, b] = ends.map(|i| position.get(i as usize));
+            (a.distance(b) / rest - 1.0).max(0.0)
+        });
+        let mut values: Vec<f32> = stretch.collect();
         if values.is_empty() {
             return ClothStretch::default();
         }
@@ -78,48 +72,43 @@ impl ClothParticles {
 
     /// Kinetic energy \[J\] of all particles that are not pinned.
     pub fn kinetic_energy(&self) -> f64 {
+        let square = |i| f64::from(self.stored_velocity(i).length_squared());
         self.free()
-            .map(|i| {
-                0.5 * f64::from(self.0.input.mass[i])
-                    * f64::from(self.stored_velocity(i).length_squared())
-            })
+            .map(|(i, m)| 0.5 * f64::from(m) * square(i))
             .sum()
     }
 
     /// Potential energy \[J\] in a uniform gravity [m/s², axes of the frame], 0 at the frame's origin.
     pub fn potential_energy(&self, gravity: Vec3) -> f64 {
-        self.free()
-            .map(|i| {
-                -f64::from(self.0.input.mass[i])
-                    * f64::from(gravity.dot(self.0.state.position.get(i)))
-            })
-            .sum()
+        let depth = |i| f64::from(gravity.dot(self.0.state.position.get(i)));
+        self.free().map(|(i, m)| -f64::from(m) * depth(i)).sum()
     }
 
     /// Linear momentum [kg m/s] of all particles that are not pinned, in the axes of the frame.
     pub fn momentum(&self) -> Vec3 {
-        self.free()
-            .map(|i| (self.stored_velocity(i) * self.0.input.mass[i]).as_dvec3())
-            .sum::<bevy_math::DVec3>()
-            .as_vec3()
+        let all = self.free();
+        let sum: DVec3 = all
+            .map(|(i, m)| (self.stored_velocity(i) * m).as_dvec3())
+            .sum();
+        sum.as_vec3()
     }
 
     /// Angular momentum [kg m²/s] of all particles that are not pinned, about the frame's origin.
     pub fn angular_momentum(&self) -> Vec3 {
-        self.free()
-            .map(|i| {
-                // Half way through the substep, where the velocity is that of the difference.
-                let place =
-                    0.5 * (self.0.state.position.get(i) + self.0.state.previous_position.get(i));
-                place
-                    .as_dvec3()
-                    .cross((self.stored_velocity(i) * self.0.input.mass[i]).as_dvec3())
-            })
-            .sum::<bevy_math::DVec3>()
-            .as_vec3()
+        let state = &self.0.state;
+        let each = self.free().map(|(i, m)| {
+            // Half way through the substep, where the velocity is that of the difference.
+            let place = 0.5 * (state.position.get(i) + state.previous_position.get(i));
+            let momentum = self.stored_velocity(i) * m;
+            place.as_dvec3().cross(momentum.as_dvec3())
+        });
+        each.sum::<DVec3>().as_vec3()
     }
 
-    fn free(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.len()).filter(|&i| self.0.input.inv_mass[i] > 0.0)
+    /// Free particles and their masses \[kg\].
+    fn free(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let input = &self.0.input;
+        let free = (0..self.len()).filter(|&i| input.inv_mass[i] > 0.0);
+        free.map(|i| (i, input.mass[i]))
     }
 }

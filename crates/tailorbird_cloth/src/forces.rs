@@ -33,14 +33,7 @@ impl Impulse {
     fn error(&self) -> Option<ClothErrorKind> {
         ClothErrorKind::vector("ClothForces.impulse", self.impulse)
             .or_else(|| ClothErrorKind::vector("ClothForces.impulse point", self.point))
-            .or_else(|| {
-                ClothErrorKind::number(
-                    "ClothForces.impulse radius",
-                    self.radius,
-                    |r| r >= 0.0,
-                    "at least 0 [m]",
-                )
-            })
+            .or_else(|| ClothErrorKind::limit("ClothForces.impulse radius", self.radius, "m"))
     }
 }
 

@@ -152,36 +152,25 @@ impl ClothInertia {
 
     /// Errors in these values.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let part = |field: &str, value| {
-            let field = format!("ClothInertia.{field}");
-            ClothErrorKind::number(&field, value, |v| (0.0..=1.0).contains(&v), "0 to 1 [-]")
+        let part = |field, value: f32| {
+            let ok = (0.0..=1.0).contains(&value);
+            ClothErrorKind::number(field, value, ok, "0 to 1 [-]")
         };
-        let limit = |field: &str, value, unit| {
-            let field = format!("ClothInertia.{field}");
-            // Infinity is no limit.
-            ClothErrorKind::number(&field, value, |v| v >= 0.0, unit)
-        };
-        [
-            part("linear", self.linear),
-            part("angular", self.angular),
-            ClothErrorKind::number(
-                "ClothInertia.centrifugal",
-                self.centrifugal,
-                |v| v >= 0.0 && v.is_finite(),
-                "at least 0 and finite [-]",
-            ),
-            limit("max_speed", self.max_speed, "at least 0 [m/s]"),
+        let (not_negative, limit) = (ClothErrorKind::not_negative, ClothErrorKind::limit);
+        let checks = [
+            part("ClothInertia.linear", self.linear),
+            part("ClothInertia.angular", self.angular),
+            not_negative("ClothInertia.centrifugal", self.centrifugal, "-"),
+            limit("ClothInertia.max_speed", self.max_speed, "m/s"),
             limit(
-                "max_angular_speed",
+                "ClothInertia.max_angular_speed",
                 self.max_angular_speed,
-                "at least 0 [rad/s]",
+                "rad/s",
             ),
-            limit("teleport_speed", self.teleport_speed, "at least 0 [m/s]"),
-            limit("teleport_angle", self.teleport_angle, "at least 0 [rad]"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+            limit("ClothInertia.teleport_speed", self.teleport_speed, "m/s"),
+            limit("ClothInertia.teleport_angle", self.teleport_angle, "rad"),
+        ];
+        checks.into_iter().flatten().collect()
     }
 
     /// Returns whether an entity that goes from one place to another in a step of this length \[s\] is put elsewhere.

@@ -292,22 +292,11 @@ impl ClothMaterial {
 
     /// Errors of this material.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
-        // Asked in every step, so that names are put together for wrong values alone.
-        let check = |field: &str, value: f32, unit: &str| {
-            (!not_negative(value)).then(|| ClothErrorKind::Value {
-                field: format!("ClothMaterial.{field}"),
-                value,
-                allowed: format!("at least 0 and finite [{unit}]"),
-            })
+        let check = |field: &str, value, unit| {
+            ClothErrorKind::not_negative(format_args!("ClothMaterial.{field}"), value, unit)
         };
-        [
-            ClothErrorKind::number(
-                "ClothMaterial.areal_density",
-                self.areal_density,
-                |v| v > 0.0 && v.is_finite(),
-                "above 0 and finite [kg/m²]",
-            ),
+        let checks = [
+            ClothErrorKind::positive("ClothMaterial.areal_density", self.areal_density, "kg/m²"),
             check("warp_compliance", self.warp_compliance, "m/N"),
             check("weft_compliance", self.weft_compliance, "m/N"),
             check("shear_compliance", self.shear_compliance, "m/N"),
@@ -318,9 +307,7 @@ impl ClothMaterial {
             check("thickness", self.thickness, "m"),
             check("drag", self.drag, "-"),
             check("lift", self.lift, "-"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        ];
+        checks.into_iter().flatten().collect()
     }
 }

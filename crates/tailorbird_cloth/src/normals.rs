@@ -35,6 +35,8 @@ pub struct ClothNormals {
     revision: u64,
 }
 
+tailorbird_solver::memory_bytes!(ClothNormals: current, previous);
+
 impl ClothNormals {
     /// Shading: particles or triangles that the normals belong to.
     pub fn shading(&self) -> ClothShading {
@@ -44,11 +46,6 @@ impl ClothNormals {
     /// The number of normals: that of particles or of triangles.
     pub fn len(&self) -> usize {
         self.current.len()
-    }
-
-    /// Heap memory of the normals \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.current.memory_bytes() + self.previous.memory_bytes()
     }
 
     /// Returns whether there are none yet.

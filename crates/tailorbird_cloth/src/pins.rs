@@ -280,13 +280,8 @@ impl ClothSelection {
             }
             Self::Within { center, radius } => {
                 let checks = [
-                    ClothErrorKind::vector(&format!("{field}.center"), center),
-                    ClothErrorKind::number(
-                        &format!("{field}.radius"),
-                        radius,
-                        |r| r >= 0.0 && r.is_finite(),
-                        "at least 0 and finite [m]",
-                    ),
+                    ClothErrorKind::vector(format_args!("{field}.center"), center),
+                    ClothErrorKind::not_negative(format_args!("{field}.radius"), radius, "m"),
                 ];
                 if let Some(error) = checks.into_iter().flatten().next() {
                     return Err(error);

@@ -32,10 +32,10 @@ use crate::{
     prelude::*,
     runner::{OwnStages, simulate_cloths},
     sampling::{
-        ClothFrameClock, FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step,
-        pass_on_teleports, sample_motion, sample_parents, see_frame,
+        ClothFrameClock, begin_fixed_step, end_fixed_step, pass_on_teleports, sample_motion,
+        sample_parents, see_frame,
     },
-    schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
+    schedule::{Part, run_substeps},
     sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
     slow_build::warn_of_slow_build,
     solver::{damp_tangles, solve_constraints, verlet_step},
@@ -80,34 +80,29 @@ impl Plugin for ClothPlugin {
             .init_resource::<ClothWind>()
             .init_resource::<ClothWindState>();
 
+        let [prepare, simulate, writeback] = [
+            (Part::Prepare, ClothSystems::Prepare),
+            (Part::Simulate, ClothSystems::Simulate),
+            (Part::Writeback, ClothSystems::Writeback),
+        ]
+        .map(|(part, set)| {
+            let run = move |world: &mut World| world.run_schedule(part);
+            // It has the whole world, of which Bevy's signal needs nothing that cloth touches.
+            run.in_set(set).ambiguous_with(signal_message_update_system)
+        });
+        let sets = (
+            ClothSystems::Prepare,
+            ClothSystems::Simulate,
+            ClothSystems::Writeback,
+        );
         app.configure_sets(
             self.schedule,
-            (
-                ClothSystems::Prepare,
-                ClothSystems::Simulate,
-                ClothSystems::Writeback,
-            )
-                .chain()
-                .before(TransformSystems::Propagate),
+            sets.chain().before(TransformSystems::Propagate),
         )
-        .add_systems(
-            self.schedule,
-            // They have the whole world, of which Bevy's signal needs nothing that cloth touches.
-            (
-                run_part::<Prepare>
-                    .in_set(ClothSystems::Prepare)
-                    .ambiguous_with(signal_message_update_system),
-                run_part::<Simulate>
-                    .in_set(ClothSystems::Simulate)
-                    .ambiguous_with(signal_message_update_system),
-                run_part::<Writeback>
-                    .in_set(ClothSystems::Writeback)
-                    .ambiguous_with(signal_message_update_system),
-            ),
-        );
+        .add_systems(self.schedule, (prepare, simulate, writeback));
         add_part(
             app,
-            Prepare,
+            Part::Prepare,
             (
                 start_clock,
                 begin_step,
@@ -134,7 +129,7 @@ impl Plugin for ClothPlugin {
         );
         add_part(
             app,
-            Simulate,
+            Part::Simulate,
             (
                 simulate_cloths.run_if(step_is_whole),
                 (
@@ -152,7 +147,7 @@ impl Plugin for ClothPlugin {
         );
         add_part(
             app,
-            Writeback,
+            Part::Writeback,
             (
                 (
                     recompute_normals,
@@ -220,28 +215,24 @@ fn add_sampling(app: &mut App) {
         );
     add_part(
         app,
-        FixedLoopBegins,
+        Part::FixedLoopBegins,
         (begin_fixed_step, begin_fixed_targets).chain(),
     );
     add_part(
         app,
-        FixedLoopEnds,
+        Part::FixedLoopEnds,
         (end_fixed_step, end_fixed_targets).chain(),
     );
     if let Some(mut order) = app.world_mut().get_resource_mut::<FixedMainScheduleOrder>() {
-        order.insert_after(FixedFirst, FixedLoopBegins);
-        order.insert_after(FixedLast, FixedLoopEnds);
+        order.insert_after(FixedFirst, Part::FixedLoopBegins);
+        order.insert_after(FixedLast, Part::FixedLoopEnds);
     }
 }
 
 /// Puts systems into a schedule of their own, on one thread: most take less time than a thread to wake.
-fn add_part<M>(
-    app: &mut App,
-    part: impl ScheduleLabel + Clone,
-    systems: impl IntoScheduleConfigs<ScheduleSystem, M>,
-) {
-    app.init_schedule(part.clone())
-        .edit_schedule(part.clone(), |schedule| {
+fn add_part<M>(app: &mut App, part: Part, systems: impl IntoScheduleConfigs<ScheduleSystem, M>) {
+    app.init_schedule(part)
+        .edit_schedule(part, |schedule| {
             schedule.set_executor(SingleThreadedExecutor::new());
         })
         .add_systems(part, systems);

@@ -14,11 +14,10 @@ use tailorbird_solver::{
 };
 
 use crate::{
-    cloth::Cloth,
     collider::ClothColliders,
     diagnostics::ClothStepTime,
     schedule::ClothSubstep,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    stages::{ClothStagesItem, StagedCloths},
     step::ClothStep,
     wind::ClothWindState,
 };
@@ -61,17 +60,18 @@ impl OwnStages {
 
 /// Takes each cloth through a whole step.
 pub(crate) fn simulate_cloths(
-    step: Res<ClothStep>,
+    mut all: StagedCloths,
     wind: Res<ClothWindState>,
-    colliders: Res<ClothColliders>,
     mut time: ResMut<ClothStepTime>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
     commands: ParallelCommands,
 ) {
     let start = WallClock::start();
-    let simulate = |cloth: &mut ClothStagesItem, workers: Workers| {
+    let simulate = |cloth: &mut ClothStagesItem,
+                    step: &ClothStep,
+                    colliders: &ClothColliders,
+                    workers: Workers| {
         cloth.particles.0.begin_step();
-        wind.blow(&step, workers, cloth);
+        wind.blow(step, workers, cloth);
         let count = step.substeps_of(
             (*cloth.solver, cloth.substeps),
             cloth.topology,
@@ -83,30 +83,30 @@ pub(crate) fn simulate_cloths(
             solver_step::step(count, nth, &colliders.list, group);
         });
         cloth.guard(step.level(), &commands);
-        cloth.settle(&step, &colliders);
+        cloth.settle(step, colliders);
         cloth.recompute_normals(step.level(), workers);
         cloth.update_bounds(step.level());
-        cloth.rest(&step, &wind, &colliders);
+        cloth.rest(step, &wind, colliders);
     };
     let is_large = |cloth: &ClothStagesItem| cloth.particles.len() >= LARGE;
     let mut large = 0;
-    for mut cloth in &mut cloths {
+    for mut cloth in &mut all.cloths {
         if cloth.rest.is_asleep() {
-            cloth.renew(step.level());
+            cloth.renew(all.step.level());
         } else if is_large(&cloth) {
             large += 1;
         }
     }
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
+    all.for_each_awake(&|mut cloth, step, colliders| {
         if !is_large(&cloth) {
-            simulate(&mut cloth, Workers::ALONE);
+            simulate(&mut cloth, step, colliders, Workers::ALONE);
         }
     });
     if large > 0 {
         Queue::open(|workers| {
-            for mut cloth in &mut cloths {
+            for mut cloth in &mut all.cloths {
                 if is_large(&cloth) && !cloth.rest.is_asleep() {
-                    simulate(&mut cloth, workers);
+                    simulate(&mut cloth, &all.step, &all.colliders, workers);
                 }
             }
         });

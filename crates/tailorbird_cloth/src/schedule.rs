@@ -16,21 +16,19 @@ pub enum ClothSystems {
     Writeback,
 }
 
-/// The systems of [`ClothSystems::Prepare`].
-#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Prepare;
-
-/// The systems of [`ClothSystems::Simulate`].
-#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Simulate;
-
-/// The systems of [`ClothSystems::Writeback`].
-#[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Writeback;
-
-/// Runs the systems of a part of the step.
-pub(crate) fn run_part<L: ScheduleLabel + Default>(world: &mut World) {
-    world.run_schedule(L::default());
+/// Schedules of this crate, each of systems that run one after the other.
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Part {
+    /// Systems of [`ClothSystems::Prepare`].
+    Prepare,
+    /// Systems of [`ClothSystems::Simulate`].
+    Simulate,
+    /// Systems of [`ClothSystems::Writeback`].
+    Writeback,
+    /// Runs when each step of the fixed loop begins, before all that moves things in it.
+    FixedLoopBegins,
+    /// Runs when each step of the fixed loop ends.
+    FixedLoopEnds,
 }
 
 /// Runs once per substep. [`ClothStep`] tells which it is and how long it lasts.

@@ -149,49 +149,27 @@ impl ClothSettings {
 
     /// Errors in these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let most = Self::MOST_PASSES as f32;
-        [
+        let passes = |field, value: u32, least| {
+            let ok = (least..=Self::MOST_PASSES).contains(&value);
+            let allowed = format_args!("{least} to {}", Self::MOST_PASSES);
+            ClothErrorKind::number(field, value as f32, ok, allowed)
+        };
+        let limit = ClothErrorKind::limit;
+        let most = Self::LARGEST_TIME_SCALE;
+        let checks = [
             ClothErrorKind::vector("ClothSettings.gravity", self.gravity),
-            ClothErrorKind::number(
-                "ClothSettings.substeps",
-                self.substeps.unwrap_or(1) as f32,
-                |v| (1.0..=most).contains(&v),
-                "1 to 1000",
-            ),
-            ClothErrorKind::number(
-                "ClothSettings.most_substeps",
-                self.most_substeps as f32,
-                |v| (1.0..=most).contains(&v),
-                "1 to 1000",
-            ),
-            ClothErrorKind::number(
-                "ClothSettings.overlap_speed",
-                self.overlap_speed,
-                |v| v >= 0.0,
-                "at least 0 [m/s]",
-            ),
-            ClothErrorKind::number(
-                "ClothSettings.iterations",
-                self.iterations as f32,
-                |v| v <= most,
-                "0 to 1000",
-            ),
+            passes("ClothSettings.substeps", self.substeps.unwrap_or(1), 1),
+            passes("ClothSettings.most_substeps", self.most_substeps, 1),
+            limit("ClothSettings.overlap_speed", self.overlap_speed, "m/s"),
+            passes("ClothSettings.iterations", self.iterations, 0),
             ClothErrorKind::number(
                 "ClothSettings.time_scale",
                 self.time_scale,
-                |v| (0.0..=Self::LARGEST_TIME_SCALE).contains(&v),
-                "0 to 10 [-]",
+                (0.0..=most).contains(&self.time_scale),
+                format_args!("0 to {most} [-]"),
             ),
-            // Infinity is no limit.
-            ClothErrorKind::number(
-                "ClothSettings.teleport_speed",
-                self.teleport_speed,
-                |v| v >= 0.0,
-                "at least 0 [m/s]",
-            ),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+            limit("ClothSettings.teleport_speed", self.teleport_speed, "m/s"),
+        ];
+        checks.into_iter().flatten().collect()
     }
 }

@@ -1,7 +1,9 @@
 //! The stages of a step, for one cloth at a time.
 
-use bevy_ecs::{prelude::*, query::QueryData};
-use tailorbird_solver::{self as solver, step::Stage};
+use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
+use tailorbird_solver::{
+    self as solver, contact::solid::SolidKind, kernels::contact::Phase, step::Stage,
+};
 
 use crate::{
     attachment::ClothAttachedParticles,
@@ -68,44 +70,56 @@ impl ClothStagesItem<'_, '_> {
     }
 }
 
-/// Runs a stage of the substep in progress for all cloths that are awake.
-pub(crate) fn run_stage(
-    stage: Stage,
-    step: &ClothStep,
-    colliders: &ClothColliders,
-    cloths: &mut Query<ClothStages, With<Cloth>>,
-) {
-    let substep = step.in_progress();
-    for_each_awake(step, cloths, &|mut item| {
-        item.with_cloth(|cloth| stage(&substep, &colliders.list, cloth));
-    });
+/// Cloths in a step, for the systems of its stages. Opaque: query the cloths' components instead.
+#[derive(SystemParam)]
+pub struct StagedCloths<'w, 's> {
+    pub(crate) step: Res<'w, ClothStep>,
+    pub(crate) colliders: Res<'w, ClothColliders>,
+    pub(crate) cloths: Query<'w, 's, ClothStages, With<Cloth>>,
 }
 
-/// Calls `f` for each cloth, on several threads where [`ClothStep::parallel`] says that it pays. Each call has the cloth for itself,
-/// so that the result does not depend on the number of threads.
-///
-/// Not generic: what shares out to threads is compiled once.
-pub(crate) fn for_each_cloth(
-    step: &ClothStep,
-    cloths: &mut Query<ClothStages, With<Cloth>>,
-    f: &(dyn Fn(ClothStagesItem) + Sync),
-) {
-    if step.parallel() {
-        cloths.par_iter_mut().for_each(f);
-    } else {
-        cloths.iter_mut().for_each(f);
+/// Work on one cloth in a step.
+type Work<'a> = &'a (dyn Fn(ClothStagesItem, &ClothStep, &ClothColliders) + Sync);
+
+impl StagedCloths<'_, '_> {
+    /// Runs a stage of the substep in progress for all cloths that are awake.
+    pub(crate) fn run(&mut self, stage: Stage) {
+        let substep = self.step.in_progress();
+        self.for_each_awake(&|mut item, _, colliders| {
+            item.with_cloth(|cloth| stage(&substep, &colliders.list, cloth));
+        });
     }
-}
 
-/// [`for_each_cloth`], for those that do not sleep.
-pub(crate) fn for_each_awake(
-    step: &ClothStep,
-    cloths: &mut Query<ClothStages, With<Cloth>>,
-    f: &(dyn Fn(ClothStagesItem) + Sync),
-) {
-    for_each_cloth(step, cloths, &|cloth| {
-        if !cloth.rest.is_asleep() {
-            f(cloth);
+    /// Keeps the particles of all cloths that are awake out of one kind of collider, in the substep in progress.
+    pub(crate) fn collide(&mut self, kind: SolidKind) {
+        let substep = self.step.in_progress();
+        self.for_each_awake(&|mut item, _, colliders| {
+            item.with_cloth(|cloth| {
+                (colliders.list).collide(Phase::Final, Some(&[kind]), &substep, cloth);
+            });
+        });
+    }
+
+    /// Calls `f` for each cloth, on several threads where [`ClothStep::parallel`] says that it pays. Each call has the cloth for itself,
+    /// so that the result does not depend on the number of threads.
+    ///
+    /// Not generic: what shares out to threads is compiled once.
+    pub(crate) fn for_each(&mut self, f: Work) {
+        let (step, colliders) = (&*self.step, &*self.colliders);
+        let f = |cloth: ClothStagesItem| f(cloth, step, colliders);
+        if step.parallel() {
+            self.cloths.par_iter_mut().for_each(f);
+        } else {
+            self.cloths.iter_mut().for_each(f);
         }
-    });
+    }
+
+    /// [`Self::for_each`], for those that do not sleep.
+    pub(crate) fn for_each_awake(&mut self, f: Work) {
+        self.for_each(&|cloth, step, colliders| {
+            if !cloth.rest.is_asleep() {
+                f(cloth, step, colliders);
+            }
+        });
+    }
 }

@@ -56,9 +56,7 @@
 use bevy_ecs::{prelude::*, query::QueryData, system::SystemParam};
 use bevy_math::{Mat3, Vec3};
 use tailorbird_solver::{
-    contact::colliders::combined_friction,
-    kernels::contact::Path,
-    particles::{Input, Particles, Scratch, State},
+    contact::colliders::combined_friction, kernels::contact::Path, particles::Particles,
     topology::order::Given,
 };
 
@@ -291,11 +289,8 @@ impl<'w> SubstepCloth<'w> {
             else {
                 continue;
             };
-            let Particles {
-                state: State { touch, .. },
-                scratch: Scratch { contacts, .. },
-                ..
-            } = &mut *self.particles;
+            let Particles { state, scratch, .. } = &mut *self.particles;
+            let (touch, contacts) = (&mut state.touch, &mut scratch.contacts);
             if contacts.depth.len() != len {
                 contacts.reset(len);
             }
@@ -339,15 +334,11 @@ impl<'w> SubstepCloth<'w> {
         i: usize,
         contact: &impl Fn(Vec3) -> Option<SubstepContact>,
     ) -> Option<(SubstepContact, Vec3)> {
-        let Particles {
-            state: State { position, .. },
-            input: Input { inv_mass, .. },
-            ..
-        } = &*self.particles;
-        if inv_mass[i] == 0.0 {
+        let Particles { state, input, .. } = &*self.particles;
+        if input.inv_mass[i] == 0.0 {
             return None;
         }
-        let contact = contact(self.to_world(position.get(i)))?;
+        let contact = contact(self.to_world(state.position.get(i)))?;
         let normal = self.frame.vector_to_frame(contact.normal);
         contact.is_valid().then_some((contact, normal))
     }

@@ -7,10 +7,8 @@ use tailorbird_solver::step::Report;
 use tracing::warn;
 
 use crate::{
-    cloth::Cloth,
     error::{ClothErrorKind, ClothErrorSource, ClothStatus},
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
-    step::ClothStep,
+    stages::{ClothStagesItem, StagedCloths},
 };
 
 /// A cloth was put back to an earlier state.
@@ -31,14 +29,8 @@ pub enum ClothResetReason {
 }
 
 /// Puts a cloth whose state is not finite back to the start of the step.
-pub fn guard_finite(
-    step: Res<ClothStep>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-    commands: ParallelCommands,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.guard(step.level(), &commands);
-    });
+pub fn guard_finite(mut cloths: StagedCloths, commands: ParallelCommands) {
+    cloths.for_each_awake(&|mut cloth, step, _| cloth.guard(step.level(), &commands));
 }
 
 impl ClothStagesItem<'_, '_> {

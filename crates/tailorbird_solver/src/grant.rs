@@ -12,12 +12,12 @@ use trial::Trial;
 use crate::{
     effort::Effort,
     kernels::{lanes::Shared, lattice::Lengths},
-    memory::heap,
+    memory_bytes,
     points::Points,
     topology::{
         chains::Chains,
-        fabric::{Fabric, Springs},
-        lattice::Lattice,
+        fabric::Springs,
+        layout::{Layout, SheetLayout},
     },
 };
 
@@ -47,15 +47,6 @@ const MUCH: f32 = 5e-3;
 
 /// Largest grant below which there is none [-].
 const LEAST: f32 = 1e-3;
-
-/// Edges that hold a cloth together.
-#[derive(Clone, Copy)]
-pub enum Threads<'a> {
-    /// Rows and columns.
-    Sheet(Lattice),
-    /// Chains and springs.
-    Mesh(&'a Fabric),
-}
 
 /// Granted strain of a cloth; empty where nothing is granted.
 #[derive(Clone, Debug, Default)]
@@ -125,6 +116,8 @@ impl Neighborhood {
     }
 }
 
+memory_bytes!(Grant: strain, asked, chains, springs, columns, neighborhoods);
+
 impl Grant {
     /// Returns whether nothing is granted.
     pub fn is_empty(&self) -> bool {
@@ -189,23 +182,13 @@ impl Grant {
         self.columns.clear();
     }
 
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.strain)
-            + heap(&self.asked)
-            + heap(&self.chains)
-            + heap(&self.springs)
-            + heap(&self.columns)
-            + self.neighborhoods.iter().map(heap).sum::<usize>()
-    }
-
     /// Grants the demand of a cloth that is asked for more than the fabric has, and takes back what was granted, at the end of a step.
-    pub fn renew(&mut self, threads: Threads, position: &Points, seconds: f32, effort: Effort) {
-        let n = threads.particles();
+    pub fn renew(&mut self, layout: &Layout, position: &Points, seconds: f32, effort: Effort) {
+        let n = layout.particles();
         if self.strain.len() != n {
             self.clear();
             // The chains of a mesh contradict one another at once.
-            let lasts = effort.lasts() || matches!(threads, Threads::Mesh(_));
+            let lasts = effort.lasts() || matches!(layout, Layout::Mesh(_));
             if !effort.is_asked || !lasts {
                 return;
             }
@@ -214,7 +197,7 @@ impl Grant {
         self.asked.clear();
         let mut growth = 0.0;
         if effort.is_asked {
-            self.measure(threads, position);
+            self.measure(layout, position);
             let [granted, asked] = [&self.strain, &self.asked].map(|strain| {
                 let sum: f32 = strain.iter().flatten().map(|part| part.max(0.0)).sum();
                 sum / n as f32
@@ -242,15 +225,15 @@ impl Grant {
             self.clear();
             return;
         }
-        self.lengthen(threads, position, seconds);
+        self.lengthen(layout, position, seconds);
     }
 
     /// Measures the demand around each particle: the mean strain of its neighbourhood. Where there is less, others have more.
-    fn measure(&mut self, threads: Threads, position: &Points) {
+    fn measure(&mut self, layout: &Layout, position: &Points) {
         let [neighborhoods, next] = &mut self.neighborhoods;
         neighborhoods.clear();
-        neighborhoods.resize(threads.particles(), Neighborhood::default());
-        threads.each_edge(|ends, rest_length, c| {
+        neighborhoods.resize(layout.particles(), Neighborhood::default());
+        layout.each_edge(|ends, rest_length, c| {
             let [a, b] = ends.map(|i| position.get(i as usize));
             let strain = (a.distance(b) / rest_length - 1.0).min(2.0 * MOST);
             for i in ends {
@@ -259,7 +242,7 @@ impl Grant {
         });
         for round in 0..ROUNDS {
             next.clone_from(neighborhoods);
-            threads.each_edge(|ends, _, _| {
+            layout.each_edge(|ends, _, _| {
                 let [a, b] = ends.map(|i| i as usize);
                 next[a].add_part(&neighborhoods[b], 1.0);
                 next[b].add_part(&neighborhoods[a], 1.0);
@@ -281,7 +264,7 @@ impl Grant {
     }
 
     /// Computes the lengths of the edges.
-    fn lengthen(&mut self, threads: Threads, position: &Points, seconds: f32) {
+    fn lengthen(&mut self, layout: &Layout, position: &Points, seconds: f32) {
         let strain = &self.strain;
         let push = PUSH * seconds;
         let length = |ends: [u32; 2], rest_length: f32, c: f32| {
@@ -291,8 +274,8 @@ impl Grant {
             let is = a.distance(b) + push * rest_length;
             (rest_length * (1.0 + granted)).min(is.max(rest_length))
         };
-        match threads {
-            Threads::Sheet(lattice) => {
+        match layout {
+            Layout::Sheet(SheetLayout { lattice, .. }) => {
                 let [dx, dy] = lattice.spacing.to_array();
                 for lengths in [&mut self.chains, &mut self.columns, &mut self.springs] {
                     lengths.clear();
@@ -314,13 +297,13 @@ impl Grant {
                     *diagonal = row.hypot(column);
                 }
             }
-            Threads::Mesh(fabric) => {
-                let chains = fabric.chains();
+            Layout::Mesh(fabric) => {
+                let chains = &fabric.chains;
                 self.chains.clone_from(&chains.rest_length);
                 for (slot, ends) in chains.slots() {
                     self.chains[slot] = length(ends, self.chains[slot], chains.along_warp[slot]);
                 }
-                let springs = fabric.shear();
+                let springs = &fabric.shear;
                 self.springs.clear();
                 let all = springs
                     .ends
@@ -340,18 +323,20 @@ fn taken_back(strain: f32) -> f32 {
     of_all + strain * (of_it + strain * of_square)
 }
 
-impl Threads<'_> {
-    fn particles(self) -> usize {
+impl Layout {
+    fn particles(&self) -> usize {
         match self {
-            Self::Sheet(lattice) => lattice.columns as usize * lattice.rows as usize,
-            Self::Mesh(fabric) => fabric.particles(),
+            Self::Sheet(SheetLayout { lattice, .. }) => {
+                lattice.columns as usize * lattice.rows as usize
+            }
+            Self::Mesh(fabric) => fabric.particles,
         }
     }
 
     /// Calls `f` with the ends, rest length \[m\] and [`Chains::along_warp`] of each edge; for a sheet without the diagonals.
-    fn each_edge(self, mut f: impl FnMut([u32; 2], f32, f32)) {
+    fn each_edge(&self, mut f: impl FnMut([u32; 2], f32, f32)) {
         match self {
-            Self::Sheet(lattice) => {
+            Self::Sheet(SheetLayout { lattice, .. }) => {
                 let [dx, dy] = lattice.spacing.to_array();
                 for ends in lattice.edges() {
                     if ends[1] == ends[0] + 1 {
@@ -362,11 +347,11 @@ impl Threads<'_> {
                 }
             }
             Self::Mesh(fabric) => {
-                let chains = fabric.chains();
+                let chains = &fabric.chains;
                 for (slot, ends) in chains.slots() {
                     f(ends, chains.rest_length[slot], chains.along_warp[slot]);
                 }
-                let springs = fabric.shear();
+                let springs = &fabric.shear;
                 for (k, ends) in springs.ends.iter().enumerate() {
                     f(*ends, springs.rest_length[k], springs.along_warp[k]);
                 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy_math::Vec3;
 
-use crate::{memory::heap, topology::order::Stored};
+use crate::{memory_bytes, topology::order::Stored};
 
 /// A particle that is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,8 @@ impl HeldBy {
 /// The particles that are held: pins, attachments, limits, the hand. One that several hold is there several times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeldParticles(Vec<Held>);
+
+memory_bytes!(HeldParticles: 0);
 
 impl HeldParticles {
     /// All particles of the list.
@@ -126,11 +128,6 @@ impl HeldParticles {
                 *at *= ratio;
             }
         }
-    }
-
-    /// Memory on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.0)
     }
 
     fn range(&self, kind: HolderKind) -> Range<usize> {

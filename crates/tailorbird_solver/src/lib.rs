@@ -14,8 +14,6 @@
 //! Units are metres, kilograms and seconds.
 
 #[doc(hidden)]
-pub mod bounds;
-#[doc(hidden)]
 pub mod cloth;
 #[doc(hidden)]
 pub mod coefficients;

@@ -7,7 +7,7 @@ use crate::{
         limit::{self, Backstop, Limits},
     },
     numbers::Numbers,
-    particles::{Input, Particles, State},
+    particles::Particles,
     points::Points,
     substep::Substep,
 };
@@ -27,54 +27,33 @@ pub struct MotionLimits {
     pub normals: [Points; 2],
 }
 
-impl MotionLimits {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let points = self.targets.iter().chain(&self.normals);
-        let numbers = [
-            &self.max_distance,
-            &self.backstop_distance,
-            &self.backstop_radius,
-        ];
-        points.map(Points::memory_bytes).sum::<usize>()
-            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
-    }
+crate::memory_bytes!(
+    MotionLimits: max_distance, backstop_distance, backstop_radius, targets, normals
+);
 
+impl MotionLimits {
     /// Moves particles that are held at their targets on by one substep.
     pub fn advance(&self, substep: &Substep, particles: &mut Particles) {
-        let Particles {
-            state: State { position, .. },
-            input: Input { held, .. },
-            ..
-        } = particles;
+        let Particles { state, input, .. } = particles;
         let left = substep.left() as f32;
-        for limited in held.of(HolderKind::Limit) {
+        for limited in input.held.of(HolderKind::Limit) {
             let i = limited.particle.index();
             if i < self.targets[1].len() {
-                let (from, to) = (position.get(i), self.targets[1].get(i));
+                let (from, to) = (state.position.get(i), self.targets[1].get(i));
                 let next = if left > 1.0 {
                     from + (to - from) / left
                 } else {
                     to
                 };
-                position.set(i, next);
+                state.position.set(i, next);
             }
         }
     }
 
     /// Keeps the free particles within their limits.
     pub fn hold(&self, substep: &Substep, particles: &mut Particles) {
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input: Input { inv_mass, .. },
-            ..
-        } = particles;
-        let len = position.len();
+        let Particles { state, input, .. } = particles;
+        let len = state.position.len();
         if self.max_distance.len() != len {
             return;
         }
@@ -91,9 +70,9 @@ impl MotionLimits {
                 radius: &self.backstop_radius,
             }),
         };
-        let position = SharedPoints::new(position);
-        let previous = SharedPoints::new(previous_position);
-        let inv_mass = Shared::new(inv_mass);
+        let position = SharedPoints::new(&mut state.position);
+        let previous = SharedPoints::new(&mut state.previous_position);
+        let inv_mass = Shared::new(&mut input.inv_mass);
         substep.workers.share(0..len, |range| {
             limit::hold(substep.level, limits, position, previous, inv_mass, range);
         });

@@ -24,6 +24,8 @@ pub struct Numbers {
     start: usize,
 }
 
+crate::memory_bytes!(Numbers: list);
+
 impl Numbers {
     /// `len` zeros.
     pub fn zeroed(len: usize) -> Self {
@@ -78,11 +80,6 @@ impl Numbers {
     #[inline]
     pub fn at_mut(&mut self, i: usize) -> &mut f32 {
         &mut self.list[self.start + i]
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        crate::memory::heap(&self.list)
     }
 }
 

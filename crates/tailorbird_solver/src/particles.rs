@@ -12,7 +12,7 @@ use crate::{
     grant::Grant,
     held::{Held, HeldParticles, HolderKind},
     kernels::contact::{Contacts, Touch},
-    memory::heap,
+    memory_bytes,
     numbers::Numbers,
     points::Points,
     topology::{
@@ -112,6 +112,12 @@ pub struct Pulled {
     pub weight: f32,
 }
 
+memory_bytes!(
+    State: position, previous_position, lost_displacement, step_position, passing, couplings, mean_position, grant
+);
+memory_bytes!(Input: acceleration, mass, inv_mass, held, pulled);
+memory_bytes!(Scratch: previous_with_air, contacts.normal, contacts.depth, lambda, cache);
+
 impl Particles {
     /// Particles at rest, without mass yet.
     pub fn at_rest(topology: &Topology) -> Self {
@@ -147,35 +153,13 @@ impl Particles {
         self.state.position.len()
     }
 
-    /// Memory on the heap \[byte\].
+    /// Heap memory in use \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        let points = [
-            &self.state.position,
-            &self.state.previous_position,
-            &self.state.lost_displacement,
-            &self.state.step_position,
-            &self.input.acceleration,
-            &self.scratch.previous_with_air,
-            &self.scratch.contacts.normal,
-        ];
-        let lists = [&self.input.mass, &self.scratch.lambda];
-        let numbers = [&self.input.inv_mass, &self.scratch.contacts.depth];
-        points.map(Points::memory_bytes).iter().sum::<usize>()
-            + lists.map(heap).iter().sum::<usize>()
-            + numbers.map(Numbers::memory_bytes).iter().sum::<usize>()
-            + self.input.held.memory_bytes()
-            + heap(&self.input.pulled)
-            + heap(&self.state.passing)
-            + heap(&self.state.couplings)
-            + self
-                .state
-                .planes
-                .iter()
-                .map(MeshPlanes::memory_bytes)
-                .sum::<usize>()
-            + heap(&self.state.mean_position)
-            + self.scratch.cache.memory_bytes()
-            + self.state.grant.memory_bytes()
+        let planes = self.state.planes.iter().map(MeshPlanes::memory_bytes);
+        self.state.memory_bytes()
+            + planes.sum::<usize>()
+            + self.input.memory_bytes()
+            + self.scratch.memory_bytes()
     }
 
     /// Returns whether there are none: the cloth is not built yet, or its shape is invalid.
@@ -328,13 +312,9 @@ impl Particles {
 
     /// Kinematic particles that do not move have no velocity.
     pub fn hold_still(&mut self) {
-        let State {
-            position,
-            previous_position,
-            ..
-        } = &mut self.state;
-        for i in self.input.held.particles() {
-            previous_position.set(i.index(), position.get(i.index()));
+        let state = &mut self.state;
+        for i in self.input.held.particles().map(Stored::index) {
+            state.previous_position.set(i, state.position.get(i));
         }
     }
 

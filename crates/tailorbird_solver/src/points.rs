@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-use crate::numbers::Numbers;
+use crate::{memory::Memory, numbers::Numbers};
 
 /// Points (or vectors) stored as three arrays of equal length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -120,6 +120,12 @@ impl Points {
         self.x.fill(value.x);
         self.y.fill(value.y);
         self.z.fill(value.z);
+    }
+}
+
+impl Memory for Points {
+    fn memory_bytes(&self) -> usize {
+        self.memory_bytes()
     }
 }
 

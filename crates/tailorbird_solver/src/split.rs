@@ -1,9 +1,6 @@
 //! Particles that are split off others.
 
-use crate::{
-    particles::{Particles, State},
-    topology::copies::ParticleCopy,
-};
+use crate::{particles::Particles, topology::copies::ParticleCopy};
 
 impl Particles {
     /// Adds particles that are split off others: they are where those are and as fast, free, and take their part of the mass. The next
@@ -14,18 +11,12 @@ impl Particles {
     pub fn append(&mut self, copies: &[ParticleCopy]) {
         for copy in copies {
             let (of, len) = (copy.of as usize, self.len());
-            let State {
-                position,
-                previous_position,
-                lost_displacement,
-                step_position,
-                ..
-            } = &mut self.state;
+            let state = &mut self.state;
             for points in [
-                position,
-                previous_position,
-                lost_displacement,
-                step_position,
+                &mut state.position,
+                &mut state.previous_position,
+                &mut state.lost_displacement,
+                &mut state.step_position,
             ] {
                 let place = points.get(of);
                 points.resize(len + 1, 0.0);

@@ -8,7 +8,7 @@ use crate::{
     contact::colliders::Colliders,
     frame::{Frame, Taken},
     kernels::{range::are_finite, rigid},
-    particles::{Input, Particles, State},
+    particles::Particles,
     solve,
     substep::Substep,
     topology::order::Stored,
@@ -70,19 +70,14 @@ pub struct Report {
 impl Report {
     /// The report of the particles of a cloth, after a step.
     pub fn of(level: Level, particles: &Particles) -> Self {
-        let State {
-            position,
-            previous_position,
-            effort,
-            ..
-        } = &particles.state;
-        let all = [position, previous_position];
+        let state = &particles.state;
+        let all = [&state.position, &state.previous_position];
         let finite = all.iter().all(|points| are_finite(level, points));
         let is_wrong = |i: &usize| !all.iter().all(|points| points.get(*i).is_finite());
         let wrong = || (0..particles.len()).find(is_wrong);
         Self {
-            strained: effort.unmet(),
-            stretched: effort.stretched(),
+            strained: state.effort.unmet(),
+            stretched: state.effort.stretched(),
             non_finite: if finite {
                 None
             } else {
@@ -121,28 +116,14 @@ fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles
         let rotation = frame.start.rotation.slerp(frame.end.rotation, fraction);
         (offset, Isometry3d::new(place, rotation))
     };
-    let Particles {
-        state:
-            State {
-                position,
-                previous_position,
-                lost_displacement,
-                ..
-            },
-        input: Input {
-            acceleration,
-            inv_mass,
-            ..
-        },
-        ..
-    } = particles;
+    let Particles { state, input, .. } = particles;
     let from = (frame.current.rotation, frame.offset);
     (frame.current, frame.offset) = (to, offset);
     let inverse: Quat = to.rotation.inverse();
     let shift = inverse * (from.1 - offset);
     let turn = inverse * from.0;
     let rotation = Mat3::from_quat(turn);
-    rigid::rotate(rotation, acceleration);
+    rigid::rotate(rotation, &mut input.acceleration);
     let (rotation, shift) = if frame.felt.is_all() {
         (rotation, shift)
     } else {
@@ -152,11 +133,12 @@ fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles
         frame.taken = Some(Taken { from, motion });
         (Mat3::from_quat(turn), shift)
     };
-    rigid::change_frame(rotation, shift, inv_mass, position, previous_position);
-    rigid::rotate(rotation, lost_displacement);
+    let places = [&mut state.position, &mut state.previous_position];
+    rigid::change_frame(rotation, shift, &input.inv_mass, places);
+    rigid::rotate(rotation, &mut state.lost_displacement);
     if frame.felt.spin != Vec3::ZERO {
         let turned = inverse * frame.felt.spin * substep.seconds;
-        rigid::add_centrifugal(turned, inv_mass, position);
+        rigid::add_centrifugal(turned, &input.inv_mass, &mut state.position);
     }
 }
 

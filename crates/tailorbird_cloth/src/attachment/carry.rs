@@ -3,7 +3,6 @@
 use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
 use tailorbird_solver::{
     holds::{Holder, STANDS},
-    particles::{Particles, State},
     pose::{Pose, motion},
 };
 
@@ -80,24 +79,19 @@ impl ClothAttachedParticles {
         if distance.max(turn) < STANDS {
             return None;
         }
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    step_position,
-                    lost_displacement,
-                    ..
-                },
-            ..
-        } = &mut particles.0;
-        for points in [position, previous_position, step_position] {
+        let state = &mut particles.0.state;
+        for points in [
+            &mut state.position,
+            &mut state.previous_position,
+            &mut state.step_position,
+        ] {
             for i in 0..points.len() {
                 points.set(i, motion * points.get(i));
             }
         }
-        for i in 0..lost_displacement.len() {
-            lost_displacement.set(i, motion.rotation * lost_displacement.get(i));
+        let lost = &mut state.lost_displacement;
+        for i in 0..lost.len() {
+            lost.set(i, motion.rotation * lost.get(i));
         }
         Some(motion.rotation)
     }

@@ -239,30 +239,20 @@ impl ClothAttachment {
 
     /// Errors in the values. Errors in the selections depend on the cloth.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let compliance = ClothErrorKind::number(
-            "ClothAttachment.compliance",
-            self.compliance,
-            |c| c >= 0.0 && c.is_finite(),
-            "at least 0 and finite [m/N]",
-        );
-        let break_force = self.break_force.and_then(|force| {
-            ClothErrorKind::number(
-                "ClothAttachment.break_force",
-                force,
-                |f| f > 0.0 && f.is_finite(),
-                "above 0 and finite [N]",
-            )
-        });
+        let compliance = "ClothAttachment.compliance";
+        let force = "ClothAttachment.break_force";
         let points = match &self.offset {
             ClothAttachmentOffset::Keep => None,
             ClothAttachmentOffset::Points(points) => points
                 .iter()
                 .find_map(|p| ClothErrorKind::vector("ClothAttachment.offset", *p)),
         };
-        [compliance, break_force, points]
-            .into_iter()
-            .flatten()
-            .collect()
+        let checks = [
+            ClothErrorKind::not_negative(compliance, self.compliance, "m/N"),
+            (self.break_force).and_then(|most| ClothErrorKind::positive(force, most, "N")),
+            points,
+        ];
+        checks.into_iter().flatten().collect()
     }
 
     /// The compliance of the whole, that of [`Self::GIVE`] included [m/N].

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf},
     frame::ClothFrame,
     inertia::{ClothTeleportMode, ClothTeleported},
     particles::ClothParticles,
@@ -47,30 +47,20 @@ pub fn prepare_attachments(
     >,
     mut attachments: Query<
         (
-            Entity,
             Ref<ClothAttachment>,
             Option<&ClothAttachedTo>,
             &ClothAttachmentForce,
             &mut ClothAttachmentState,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<ClothAttachmentOf>,
     >,
-    mut orphans: Query<
-        (Entity, &mut ClothStatus),
-        (With<ClothAttachment>, Without<ClothAttachmentOf>),
-    >,
+    mut orphans: Query<ClothStatusOf, (With<ClothAttachment>, Without<ClothAttachmentOf>)>,
     commands: ParallelCommands,
 ) {
-    for (entity, mut status) in &mut orphans {
+    for mut status in &mut orphans {
         let error = ClothErrorKind::unrelated("ClothAttachmentOf");
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Attachment,
-            [error],
-        );
+        status.update(&commands, ClothErrorSource::Attachment, [error]);
     }
     for (cloth, list, topology, frame, rest, mut particles, mut attached) in &mut cloths {
         if particles.is_empty() || list.is_none() && attached.is_empty() {
@@ -80,8 +70,7 @@ pub fn prepare_attachments(
         let bodies_before = attached.bodies.len();
         attached.0.clear();
         for attachment in list.into_iter().flat_map(RelationshipTarget::iter) {
-            let Ok((entity, data, to, carried, mut state, mut status)) =
-                attachments.get_mut(attachment)
+            let Ok((data, to, carried, mut state, mut status)) = attachments.get_mut(attachment)
             else {
                 continue;
             };
@@ -106,8 +95,7 @@ pub fn prepare_attachments(
                 } else {
                     errors.push(ClothErrorKind::unrelated("ClothAttachedTo"));
                 }
-                let source = ClothErrorSource::Attachment;
-                ClothStatus::update(&mut status, entity, &commands, source, errors);
+                status.update(&commands, ClothErrorSource::Attachment, errors);
                 continue;
             };
             let sampled = poses
@@ -136,8 +124,7 @@ pub fn prepare_attachments(
                 }
             };
             errors.extend(state.wrong.iter().cloned());
-            let source = ClothErrorSource::Attachment;
-            ClothStatus::update(&mut status, entity, &commands, source, errors);
+            status.update(&commands, ClothErrorSource::Attachment, errors);
             // Particles of another topology mean nothing in this one.
             let resolved = state.target.is_some() && state.revision == topology.revision;
             let Some(end) = end.filter(|_| resolved) else {

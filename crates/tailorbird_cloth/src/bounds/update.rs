@@ -4,17 +4,11 @@ use bevy_ecs::prelude::*;
 use fearless_simd::Level;
 
 use super::ClothBounds;
-use crate::{
-    cloth::Cloth,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
-    step::ClothStep,
-};
+use crate::stages::{ClothStagesItem, StagedCloths};
 
 /// Computes the boxes of all cloths.
-pub fn update_bounds(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.update_bounds(step.level());
-    });
+pub fn update_bounds(mut cloths: StagedCloths) {
+    cloths.for_each_awake(&|mut cloth, step, _| cloth.update_bounds(step.level()));
 }
 
 impl ClothStagesItem<'_, '_> {

@@ -37,18 +37,12 @@ impl HeightField {
                 columns,
             });
         }
-        let mut values = heights.iter().map(|height| {
-            let finite = |h: f32| h.is_finite();
-            ClothErrorKind::number("HeightField height", *height, finite, "finite [m]")
-        });
-        let sides = size.to_array().map(|side| {
-            let ok = |s: f32| s > 0.0 && s.is_finite();
-            ClothErrorKind::number("HeightField size", side, ok, "above 0 and finite [m]")
-        });
-        if let Some(error) = values
-            .find_map(|e| e)
-            .or(sides.into_iter().flatten().next())
-        {
+        let finite =
+            |h: f32| ClothErrorKind::number("HeightField height", h, h.is_finite(), "finite [m]");
+        let positive = |side| ClothErrorKind::positive("HeightField size", side, "m");
+        let mut sides = size.to_array().into_iter();
+        let wrong = heights.iter().find_map(|h| finite(*h));
+        if let Some(error) = wrong.or_else(|| sides.find_map(positive)) {
             return Err(error);
         }
         let resolution = UVec2::new(columns, rows);

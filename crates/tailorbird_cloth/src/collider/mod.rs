@@ -224,18 +224,8 @@ impl ClothCollider {
 /// Errors of a collider.
 fn check(shape: &ClothColliderShape, friction: f32, margin: f32) -> Vec<ClothErrorKind> {
     let mut errors = shape.errors();
-    let not_negative = |v: f32| v >= 0.0 && v.is_finite();
-    errors.extend(ClothErrorKind::number(
-        "ClothCollider.friction",
-        friction,
-        not_negative,
-        "at least 0 and finite [-]",
-    ));
-    errors.extend(ClothErrorKind::number(
-        "ClothCollider.margin",
-        margin,
-        not_negative,
-        "at least 0 and finite [m]",
-    ));
+    let not_negative = ClothErrorKind::not_negative;
+    errors.extend(not_negative("ClothCollider.friction", friction, "-"));
+    errors.extend(not_negative("ClothCollider.margin", margin, "m"));
     errors
 }

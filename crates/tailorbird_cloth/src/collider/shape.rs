@@ -103,14 +103,8 @@ impl Compound {
 impl ClothColliderShape {
     /// Errors in its measures.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let positive = |field: &str, value: f32| {
-            let ok = |v: f32| v > 0.0 && v.is_finite();
-            ClothErrorKind::number(field, value, ok, "above 0 and finite [m]")
-        };
-        let length = |field: &str, value: f32| {
-            let ok = |v: f32| v >= 0.0 && v.is_finite();
-            ClothErrorKind::number(field, value, ok, "at least 0 and finite [m]")
-        };
+        let positive = |field, value| ClothErrorKind::positive(field, value, "m");
+        let length = |field, value| ClothErrorKind::not_negative(field, value, "m");
         let found = match self {
             Self::Sphere { radius } => [positive("ClothCollider radius", *radius), None, None],
             Self::Capsule {

@@ -9,58 +9,44 @@ use super::{
     ClothExternalCollider, ClothExternalColliders, ClothLayers, check,
 };
 use crate::{
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatus, ClothStatusOf},
     frame::split,
     sampling::ClothSampledPoses,
     step::ClothStep,
 };
 
-/// Common properties of all parts of a collider.
-struct Whole<'a> {
-    step: u64,
-    entity: Entity,
-    part: u32,
-    scale: Vec3,
-    shape: &'a ClothColliderShape,
-    friction: f32,
-    margin: f32,
-    layers: ClothLayers,
-    start: Isometry3d,
-    end: Isometry3d,
-    body: Option<usize>,
-}
-
 impl ClothColliders {
-    fn add(&mut self, whole: &Whole) {
-        if let ClothColliderShape::Compound(compound) = whole.shape {
+    /// Adds the parts of a collider at this scale.
+    fn add(&mut self, step: u64, scale: Vec3, whole: &ClothExternalCollider) {
+        let body = whole.body.as_ref().map(|body| self.body(body));
+        let mut add = |part: u32, shape: &ClothColliderShape, at: Isometry3d| {
+            let (rotation, scale) = scaled_axes(scale, at.rotation);
+            let at = Isometry3d::new(at.translation, rotation);
+            let Some(solid) = self.solids.scaled(step, shape, scale) else {
+                return;
+            };
+            self.list.colliders.push(MovingCollider {
+                id: ColliderId {
+                    owner: whole.entity.to_bits(),
+                    part: (whole.part, part),
+                },
+                solid,
+                friction: whole.friction,
+                margin: whole.margin,
+                layers: whole.layers.layers(),
+                start: whole.start * at,
+                end: whole.end * at,
+                body,
+            });
+        };
+        if let ClothColliderShape::Compound(compound) = &whole.shape {
             for (k, (at, shape)) in compound.parts().iter().enumerate() {
-                let place = Isometry3d::new(Vec3::from(at.translation) * whole.scale, at.rotation);
-                self.add_part(whole, k as u32, shape, place);
+                let place = Isometry3d::new(Vec3::from(at.translation) * scale, at.rotation);
+                add(k as u32, shape, place);
             }
         } else {
-            self.add_part(whole, 0, whole.shape, Isometry3d::IDENTITY);
+            add(0, &whole.shape, Isometry3d::IDENTITY);
         }
-    }
-
-    fn add_part(&mut self, whole: &Whole, part: u32, shape: &ClothColliderShape, at: Isometry3d) {
-        let (rotation, scale) = scaled_axes(whole.scale, at.rotation);
-        let at = Isometry3d::new(at.translation, rotation);
-        let Some(solid) = self.solids.scaled(whole.step, shape, scale) else {
-            return;
-        };
-        self.list.colliders.push(MovingCollider {
-            id: ColliderId {
-                owner: whole.entity.to_bits(),
-                part: (whole.part, part),
-            },
-            solid,
-            friction: whole.friction,
-            margin: whole.margin,
-            layers: whole.layers.layers(),
-            start: whole.start * at,
-            end: whole.end * at,
-            body: whole.body,
-        });
     }
 
     /// The place of a body in the list of bodies.
@@ -100,13 +86,12 @@ pub fn snapshot_colliders(
     mut list: ResMut<ClothColliders>,
     mut external: ResMut<ClothExternalColliders>,
     mut colliders: Query<(
-        Entity,
         &ClothCollider,
         Option<&ClothLayers>,
         &mut ClothColliderState,
-        &mut ClothStatus,
+        ClothStatusOf,
     )>,
-    mut others: Query<&mut ClothStatus, Without<ClothCollider>>,
+    mut others: Query<ClothStatusOf, Without<ClothCollider>>,
     commands: ParallelCommands,
 ) {
     let list = &mut *list;
@@ -114,46 +99,34 @@ pub fn snapshot_colliders(
     list.list.boxes.clear();
     list.list.bodies.clear();
     list.bodies.clear();
-    for (entity, collider, layers, mut pose, mut status) in &mut colliders {
+    for (collider, layers, mut pose, mut status) in &mut colliders {
+        let entity = status.entity;
         let errors = collider.errors();
         let valid = errors.is_empty();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Collider,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Collider, errors);
         let Ok(sampled) = poses.get(entity) else {
             continue;
         };
         let place = split(&sampled.end);
         let error = place.as_ref().err().cloned();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Transform,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Transform, error);
         let (Ok((end, scale)), true) = (place, valid) else {
             continue;
         };
         let scale = pose.settle(scale);
         let start = split(&sampled.start).map_or(end, |(start, _)| start);
-        list.add(&Whole {
-            step: step.steps(),
+        let whole = ClothExternalCollider {
             entity,
             part: 0,
-            scale,
-            shape: &collider.shape,
+            shape: collider.shape.clone(),
             friction: collider.friction,
             margin: collider.margin,
             layers: layers.copied().unwrap_or_default(),
             start,
             end,
             body: None,
-        });
+        };
+        list.add(step.steps(), scale, &whole);
     }
     take_external(list, &mut external, step.steps(), &mut others, &commands);
     // The order in which they are solved must not depend on how entities are stored.
@@ -174,7 +147,7 @@ fn take_external(
     list: &mut ClothColliders,
     external: &mut ClothExternalColliders,
     step: u64,
-    statuses: &mut Query<&mut ClothStatus, Without<ClothCollider>>,
+    statuses: &mut Query<ClothStatusOf, Without<ClothCollider>>,
     commands: &ParallelCommands,
 ) {
     let colliders = &mut external.colliders;
@@ -193,33 +166,13 @@ fn take_external(
         for collider in parts {
             let before = errors.len();
             errors.extend(external_errors(collider));
-            if errors.len() > before {
-                continue;
+            if errors.len() == before {
+                list.add(step, Vec3::ONE, collider);
             }
-            let body = collider.body.as_ref().map(|body| list.body(body));
-            list.add(&Whole {
-                step,
-                entity: collider.entity,
-                part: collider.part,
-                scale: Vec3::ONE,
-                shape: &collider.shape,
-                friction: collider.friction,
-                margin: collider.margin,
-                layers: collider.layers,
-                start: collider.start,
-                end: collider.end,
-                body,
-            });
         }
         let entity = parts[0].entity;
         if let Ok(mut status) = statuses.get_mut(entity) {
-            ClothStatus::update(
-                &mut status,
-                entity,
-                commands,
-                ClothErrorSource::Collider,
-                errors,
-            );
+            status.update(commands, ClothErrorSource::Collider, errors);
         } else if !errors.is_empty() {
             // They are reported in the next step.
             commands.command_scope(|mut commands| {

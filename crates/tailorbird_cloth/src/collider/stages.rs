@@ -1,55 +1,38 @@
 //! The stages that keep particles out of colliders.
 
-use bevy_ecs::prelude::*;
-use tailorbird_solver::{contact::solid::SolidKind, kernels::contact::Phase, step::APPROACH};
+use tailorbird_solver::{contact::solid::SolidKind, step::APPROACH};
 
-use super::ClothColliders;
-use crate::{
-    cloth::Cloth,
-    stages::{ClothStages, for_each_awake, run_stage},
-    step::ClothStep,
-};
+use crate::stages::StagedCloths;
 
 /// Looks for contacts before the constraints are solved: pushes particles out, and notes where they touch.
 ///
 /// For [`ClothSolver::Chains`](crate::solver::ClothSolver::Chains) alone, which then moves those particles along the surface, and bodies with them that cloth
 /// pushes.
-pub fn find_contacts(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(APPROACH, &step, &colliders, &mut cloths);
+pub fn find_contacts(mut cloths: StagedCloths) {
+    cloths.run(APPROACH);
 }
 
-macro_rules! collide_systems {
-    ($($(#[$doc:meta])* $name:ident: $kind:ident,)*) => {
-        $(
-            $(#[$doc])*
-            pub fn $name(
-                step: Res<ClothStep>,
-                colliders: Res<ClothColliders>,
-                mut cloths: Query<ClothStages, With<Cloth>>,
-            ) {
-                let substep = step.in_progress();
-                for_each_awake(&step, &mut cloths, &|mut cloth| {
-                    cloth.with_cloth(|cloth| {
-                        (colliders.list).collide(Phase::Final, Some(&[SolidKind::$kind]), &substep, cloth);
-                    });
-                });
-            }
-        )*
-    };
+/// Keeps particles out of the spheres.
+pub fn collide_sphere(mut cloths: StagedCloths) {
+    cloths.collide(SolidKind::Sphere);
 }
 
-collide_systems! {
-    /// Keeps particles out of the spheres.
-    collide_sphere: Sphere,
-    /// Keeps particles out of the half-spaces.
-    collide_half_space: HalfSpace,
-    /// Keeps particles out of the capsules, straight and tapered.
-    collide_capsule: Capsule,
-    /// Keeps particles out of the boxes.
-    collide_cuboid: Cuboid,
-    /// Keeps particles out of cylinders, convex hulls, triangle meshes and terrain.
-    collide_shape: Other,
+/// Keeps particles out of the half-spaces.
+pub fn collide_half_space(mut cloths: StagedCloths) {
+    cloths.collide(SolidKind::HalfSpace);
+}
+
+/// Keeps particles out of the capsules, straight and tapered.
+pub fn collide_capsule(mut cloths: StagedCloths) {
+    cloths.collide(SolidKind::Capsule);
+}
+
+/// Keeps particles out of the boxes.
+pub fn collide_cuboid(mut cloths: StagedCloths) {
+    cloths.collide(SolidKind::Cuboid);
+}
+
+/// Keeps particles out of cylinders, convex hulls, triangle meshes and terrain.
+pub fn collide_shape(mut cloths: StagedCloths) {
+    cloths.collide(SolidKind::Other);
 }

@@ -4,12 +4,14 @@
 
 mod status;
 
+use std::fmt::Display;
+
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use thiserror::Error;
 
-pub use status::{ClothErrorSource, ClothStatus};
+pub use status::{ClothErrorSource, ClothStatus, ClothStatusOf, ClothStatusOfItem};
 pub use tailorbird_solver::error::ClothShapeError;
 
 /// Something is wrong with a cloth or a collider.
@@ -216,18 +218,50 @@ pub enum ClothErrorKind {
 }
 
 impl ClothErrorKind {
-    /// An error about a number, or nothing where `ok` holds.
+    /// An error about a number that is not ok. Names are put together for wrong values alone: some are asked for in every step.
     pub(crate) fn number(
-        field: &str,
+        field: impl Display,
         value: f32,
-        ok: impl Fn(f32) -> bool,
-        allowed: &str,
+        ok: bool,
+        allowed: impl Display,
     ) -> Option<Self> {
-        (!ok(value)).then(|| Self::Value {
-            field: field.into(),
+        (!ok).then(|| Self::Value {
+            field: field.to_string(),
             value,
-            allowed: allowed.into(),
+            allowed: allowed.to_string(),
         })
+    }
+
+    /// An error about a number that is not above 0 and finite.
+    pub(crate) fn positive(field: impl Display, value: f32, unit: &str) -> Option<Self> {
+        let ok = value > 0.0 && value.is_finite();
+        Self::number(
+            field,
+            value,
+            ok,
+            format_args!("above 0 and finite [{unit}]"),
+        )
+    }
+
+    /// An error about a number that is not at least 0 and finite.
+    pub(crate) fn not_negative(field: impl Display, value: f32, unit: &str) -> Option<Self> {
+        let ok = value >= 0.0 && value.is_finite();
+        Self::number(
+            field,
+            value,
+            ok,
+            format_args!("at least 0 and finite [{unit}]"),
+        )
+    }
+
+    /// An error about a number that is not at least 0; infinity is no limit.
+    pub(crate) fn limit(field: impl Display, value: f32, unit: &str) -> Option<Self> {
+        Self::number(
+            field,
+            value,
+            value >= 0.0,
+            format_args!("at least 0 [{unit}]"),
+        )
     }
 
     /// An error about an attachment without this relationship.
@@ -238,9 +272,9 @@ impl ClothErrorKind {
     }
 
     /// An error about a vector that is not finite.
-    pub(crate) fn vector(field: &str, value: Vec3) -> Option<Self> {
+    pub(crate) fn vector(field: impl Display, value: Vec3) -> Option<Self> {
         (!value.is_finite()).then(|| Self::Vector {
-            field: field.into(),
+            field: field.to_string(),
             value,
         })
     }

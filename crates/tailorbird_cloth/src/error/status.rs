@@ -1,6 +1,6 @@
 //! Present errors of an entity.
 
-use bevy_ecs::prelude::*;
+use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_reflect::prelude::*;
 use tracing::error;
 
@@ -137,5 +137,25 @@ impl ClothStatus {
             }
             status.entries.push((source, kind));
         }
+    }
+}
+
+/// Status of an entity, in a query of what checks it.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub struct ClothStatusOf {
+    pub(crate) entity: Entity,
+    pub(crate) list: &'static mut ClothStatus,
+}
+
+impl ClothStatusOfItem<'_, '_> {
+    /// See [`ClothStatus::update`].
+    pub(crate) fn update(
+        &mut self,
+        commands: &ParallelCommands,
+        source: ClothErrorSource,
+        found: impl IntoIterator<Item = ClothErrorKind>,
+    ) {
+        ClothStatus::update(&mut self.list, self.entity, commands, source, found);
     }
 }

@@ -2,15 +2,12 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use tailorbird_solver::{
-    particles::{Input, Particles, State},
-    topology::order::Given,
-};
+use tailorbird_solver::{particles::Particles, topology::order::Given};
 
 use super::{ClothForces, Impulse};
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf},
     frame::ClothFrame,
     particles::ClothParticles,
     step::ClothStep,
@@ -21,29 +18,22 @@ pub fn apply_forces(
     step: Res<ClothStep>,
     mut cloths: Query<
         (
-            Entity,
             &mut ClothForces,
             &mut ClothParticles,
             &ClothFrame,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut forces, mut particles, frame, mut status) in &mut cloths {
+    for (mut forces, mut particles, frame, mut status) in &mut cloths {
         if particles.is_empty() {
             continue;
         }
         particles.0.input.acceleration.clear();
         if forces.is_empty() {
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Forces,
-                None,
-            );
+            status.update(&commands, ClothErrorSource::Forces, None);
             continue;
         }
         particles.0.state.effort.driven = f32::INFINITY;
@@ -90,13 +80,7 @@ pub fn apply_forces(
             particles.add_impulse(local, step.seconds());
         }
         forces.bypass_change_detection().clear();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Forces,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Forces, errors);
     }
 }
 
@@ -115,27 +99,23 @@ impl ClothParticles {
         let weight =
             |position: Vec3| (1.0 - distance_squared(position) / (radius * radius)).max(0.0);
         self.0.accelerations();
-        let Particles {
-            state: State { position, .. },
-            input:
-                Input {
-                    acceleration,
-                    inv_mass,
-                    ..
-                },
-            ..
-        } = &mut self.0;
+        let Particles { state, input, .. } = &mut self.0;
+        let (position, inv_mass) = (&state.position, &input.inv_mass);
         let free = || (0..inv_mass.len()).filter(|&i| inv_mass[i] > 0.0);
         let total: f32 = free().map(|i| weight(position.get(i))).sum();
         if radius > 0.0 && total > 0.0 {
             for i in free() {
                 let share = weight(position.get(i)) / total;
-                acceleration.add(i, impulse * (share * inv_mass[i] / seconds));
+                input
+                    .acceleration
+                    .add(i, impulse * (share * inv_mass[i] / seconds));
             }
         } else if let Some(nearest) = free().min_by(|&a, &b| {
             distance_squared(position.get(a)).total_cmp(&distance_squared(position.get(b)))
         }) {
-            acceleration.add(nearest, impulse * (inv_mass[nearest] / seconds));
+            input
+                .acceleration
+                .add(nearest, impulse * (inv_mass[nearest] / seconds));
         }
     }
 }

@@ -9,12 +9,11 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    collider::ClothColliders,
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     inertia::ClothInertia,
     particles::ClothParticles,
     sampling::{ClothSampledMotion, ClothSampledPoses},
-    stages::{ClothStages, run_stage},
+    stages::StagedCloths,
     step::ClothStep,
 };
 
@@ -27,12 +26,11 @@ pub fn prepare_frames(
     poses: ClothSampledPoses,
     mut cloths: Query<
         (
-            Entity,
             &ClothSampledMotion,
             &mut ClothFrame,
             Ref<ClothInertia>,
             &ClothParticles,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
@@ -44,21 +42,15 @@ pub fn prepare_frames(
     } else {
         [f32::INFINITY; 2]
     };
-    for (entity, own, mut frame, inertia, particles, mut status) in &mut cloths {
+    for (own, mut frame, inertia, particles, mut status) in &mut cloths {
         if inertia.is_changed() {
             let errors = inertia.errors();
             if errors.is_empty() {
                 frame.inertia = *inertia;
             }
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Inertia,
-                errors,
-            );
+            status.update(&commands, ClothErrorSource::Inertia, errors);
         }
-        let Ok(pose) = poses.get(entity) else {
+        let Ok(pose) = poses.get(status.entity) else {
             continue;
         };
         let holds = particles.input.held.any_in_frame();
@@ -80,21 +72,12 @@ pub fn prepare_frames(
                 Some(error)
             }
         };
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Transform,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Transform, error);
     }
 }
 
 /// Moves the frames on by one substep, and expresses the free particles in the moved frame; moves what is attached or held at a
 /// target.
-pub fn advance_frames(
-    (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    run_stage(ADVANCE, &step, &colliders, &mut cloths);
+pub fn advance_frames(mut cloths: StagedCloths) {
+    cloths.run(ADVANCE);
 }

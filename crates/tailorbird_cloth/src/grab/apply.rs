@@ -13,7 +13,7 @@ use tailorbird_solver::{
 use super::ClothGrab;
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf},
     frame::ClothFrame,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -29,18 +29,17 @@ fn falloff(distance: f32, radius: f32) -> f32 {
 pub fn apply_grab(
     mut cloths: Query<
         (
-            Entity,
             &mut ClothGrab,
             &ClothTopology,
             &ClothFrame,
             &mut ClothParticles,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut grab, topology, frame, mut particles, mut status) in &mut cloths {
+    for (mut grab, topology, frame, mut particles, mut status) in &mut cloths {
         let before = particles.grabbed();
         let order = particles.order.clone();
         let error = match &mut grab.bypass_change_detection().held {
@@ -87,13 +86,7 @@ pub fn apply_grab(
                 None
             }
         };
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Grab,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Grab, error);
         if particles.grabbed() != before {
             particles.0.update_inv_masses();
         }

@@ -49,6 +49,8 @@
 mod prepare;
 mod samples;
 
+use std::fmt::Arguments;
+
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
@@ -96,25 +98,23 @@ impl ClothPerParticle {
         }
     }
 
-    /// Error of a list: in the number of values, or in a value that is not `ok`.
+    /// Error of a list: in the number of values, or the first in a value.
     fn error(
         &self,
         field: &str,
         particles: usize,
-        ok: impl Fn(f32) -> bool,
-        allowed: &str,
+        check: impl Fn(Arguments, f32) -> Option<ClothErrorKind>,
     ) -> Option<ClothErrorKind> {
         match self {
-            Self::All(value) => ClothErrorKind::number(field, *value, ok, allowed),
+            Self::All(value) => check(format_args!("{field}"), *value),
             Self::Each(values) if values.len() != particles => Some(ClothErrorKind::Count {
                 field: field.into(),
                 value: values.len(),
                 allowed: format!("one for each of {particles} particles"),
             }),
             Self::Each(values) => {
-                let wrong = values.iter().position(|value| !ok(*value))?;
-                let field = format!("{field}[{wrong}]");
-                ClothErrorKind::number(&field, values[wrong], ok, allowed)
+                let mut values = values.iter().enumerate();
+                values.find_map(|(i, value)| check(format_args!("{field}[{i}]"), *value))
             }
         }
     }
@@ -184,27 +184,19 @@ impl ClothMotionConstraints {
 
     /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
-        let not_negative = |v: f32| v >= 0.0;
-        let distance = |values: &ClothPerParticle, field| {
-            values.error(field, particles, not_negative, "at least 0 [m]")
+        let check = |field: &str, values: &ClothPerParticle| {
+            let field = format!("ClothMotionConstraints.{field}");
+            values.error(&field, particles, |at, v| ClothErrorKind::limit(at, v, "m"))
         };
-        let radius = self.backstop_radius.error(
-            "ClothMotionConstraints.backstop_radius",
-            particles,
-            |r| r > 0.0 && r.is_finite(),
-            "above 0 and finite [m]",
-        );
-        [
-            distance(&self.max_distance, "ClothMotionConstraints.max_distance"),
-            distance(
-                &self.backstop_distance,
-                "ClothMotionConstraints.backstop_distance",
-            ),
-            radius,
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        let radius = "ClothMotionConstraints.backstop_radius";
+        let checks = [
+            check("max_distance", &self.max_distance),
+            check("backstop_distance", &self.backstop_distance),
+            (self.backstop_radius).error(radius, particles, |at, r| {
+                ClothErrorKind::positive(at, r, "m")
+            }),
+        ];
+        checks.into_iter().flatten().collect()
     }
 }
 
@@ -266,8 +258,9 @@ impl ClothMotionTargets {
 
     /// Errors for a cloth of so many particles.
     pub fn errors(&self, particles: usize) -> Vec<ClothErrorKind> {
-        let count = |values: &[Vec3], field: &str, allowed| {
-            let wrong = values.len() != particles && !(allowed && values.is_empty());
+        let count = |values: &[Vec3], field: &str| {
+            // None may be set yet.
+            let wrong = values.len() != particles && !values.is_empty();
             wrong.then(|| ClothErrorKind::Count {
                 field: field.into(),
                 value: values.len(),
@@ -276,19 +269,16 @@ impl ClothMotionTargets {
         };
         let finite = |values: &[Vec3], field: &str| {
             let wrong = values.iter().position(|p| !p.is_finite())?;
-            ClothErrorKind::vector(&format!("{field}[{wrong}]"), values[wrong])
+            ClothErrorKind::vector(format_args!("{field}[{wrong}]"), values[wrong])
         };
         let (positions, normals) = ("ClothMotionTargets positions", "ClothMotionTargets normals");
-        [
-            // None are set yet.
-            count(&self.positions, positions, true),
-            count(&self.normals, normals, true),
+        let checks = [
+            count(&self.positions, positions),
+            count(&self.normals, normals),
             finite(&self.positions, positions),
             finite(&self.normals, normals),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        ];
+        checks.into_iter().flatten().collect()
     }
 }
 

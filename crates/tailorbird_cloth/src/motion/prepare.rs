@@ -6,7 +6,6 @@ use fearless_simd::Level;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     kernels::{lanes::SharedPoints, normals},
-    memory::heap,
     numbers::Numbers,
     points::Points,
     topology::{
@@ -21,7 +20,7 @@ use super::{
 };
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     frame::ClothFrame,
     particles::ClothParticles,
     sampling::ClothFrameClock,
@@ -43,7 +42,6 @@ pub fn prepare_motion(
     (clock, settings): (Res<ClothFrameClock>, Res<ClothSettings>),
     mut cloths: Query<
         (
-            Entity,
             Option<Ref<ClothMotionConstraints>>,
             Option<(Ref<ClothMotionTargets>, &mut ClothTargetSamples)>,
             &ClothTopology,
@@ -51,23 +49,14 @@ pub fn prepare_motion(
             &ClothSleepState,
             &mut ClothMotionState,
             &mut ClothParticles,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (
-        entity,
-        constraints,
-        targets,
-        topology,
-        frame,
-        rest,
-        mut motion,
-        mut particles,
-        mut status,
-    ) in &mut cloths
+    for (constraints, targets, topology, frame, rest, mut motion, mut particles, mut status) in
+        &mut cloths
     {
         if particles.is_empty() {
             continue;
@@ -82,7 +71,7 @@ pub fn prepare_motion(
             };
             particles.0.hold(HolderKind::Limit, []);
             for source in [ClothErrorSource::Motion, ClothErrorSource::MotionTargets] {
-                ClothStatus::update(&mut status, entity, &commands, source, None);
+                status.update(&commands, source, None);
             }
             continue;
         };
@@ -96,8 +85,7 @@ pub fn prepare_motion(
                 motion.held.clear();
             }
             motion.disturbed |= rebuilt;
-            let source = ClothErrorSource::Motion;
-            ClothStatus::update(&mut status, entity, &commands, source, errors);
+            status.update(&commands, ClothErrorSource::Motion, errors);
         }
         if rebuilt {
             motion.rest(topology, step.level());
@@ -106,14 +94,14 @@ pub fn prepare_motion(
             && (rebuilt || targets.is_changed())
         {
             let errors = targets.errors(topology.particles());
-            let source = ClothErrorSource::MotionTargets;
-            ClothStatus::update(&mut status, entity, &commands, source, errors);
+            status.update(&commands, ClothErrorSource::MotionTargets, errors);
         }
         motion.revision = topology.revision;
         if step.running() {
             let mut elsewhere = std::mem::take(&mut motion.idle);
             let valid = targets.filter(|(targets, _)| {
-                !targets.positions.is_empty() && status.is_ok_for(ClothErrorSource::MotionTargets)
+                !targets.positions.is_empty()
+                    && status.list.is_ok_for(ClothErrorSource::MotionTargets)
             });
             // One that sleeps remembers where the targets were when it fell asleep, however slowly they creep away.
             if !rest.is_asleep() {
@@ -169,12 +157,9 @@ pub fn prepare_motion(
     }
 }
 
-impl ClothMotionState {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.limits.memory_bytes() + heap(&self.held)
-    }
+tailorbird_solver::memory_bytes!(ClothMotionState: limits, held);
 
+impl ClothMotionState {
     /// Returns whether the targets move, however slowly.
     pub(crate) fn is_led(&self) -> bool {
         self.furthest > STANDS

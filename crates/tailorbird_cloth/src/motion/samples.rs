@@ -2,11 +2,7 @@
 
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
-use tailorbird_solver::{
-    held::HolderKind,
-    memory::heap,
-    particles::{Input, Particles, State},
-};
+use tailorbird_solver::{held::HolderKind, particles::Particles};
 
 use super::{ClothMotionState, ClothMotionTargets, ClothTargetSamples, KEPT, SeenTargets};
 use crate::{
@@ -43,16 +39,10 @@ impl TargetsAt<'_> {
     }
 }
 
-impl ClothTargetSamples {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let lists = self
-            .seen
-            .iter()
-            .flat_map(|seen| [&seen.positions, &seen.normals]);
-        lists.map(heap).sum()
-    }
+tailorbird_solver::memory_bytes!(SeenTargets: positions, normals);
+tailorbird_solver::memory_bytes!(ClothTargetSamples: seen);
 
+impl ClothTargetSamples {
     /// Returns whether the targets were put elsewhere since the last call.
     pub(super) fn take_jump(&mut self) -> bool {
         std::mem::take(&mut self.jumped)
@@ -69,7 +59,7 @@ impl ClothTargetSamples {
         targets: &Ref<ClothMotionTargets>,
         clock: &ClothFrameClock,
     ) {
-        if clock.is_looping() {
+        if clock.looping {
             self.fixed = self.fixed.saturating_sub(1);
             self.note_moves(targets.last_changed());
         } else {
@@ -90,10 +80,10 @@ impl ClothTargetSamples {
         clock: &ClothFrameClock,
         particles: usize,
     ) -> TargetsAt<'a> {
-        let moment = clock.moment();
+        let moment = clock.moment;
         let known = &self.seen[..self.known];
         let ago = |frames: usize| {
-            let number = clock.seen().saturating_sub(frames as u64);
+            let number = clock.seen.saturating_sub(frames as u64);
             let found = known.iter().find(|seen| seen.number <= number);
             found.or(known.last())
         };
@@ -155,22 +145,16 @@ impl ClothMotionState {
     /// Takes each particle along with its target, where that was put elsewhere.
     pub(super) fn take_along(&self, particles: &mut ClothParticles) {
         let [start, end] = &self.limits.targets;
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    step_position,
-                    ..
-                },
-            input: Input { inv_mass, held, .. },
-            ..
-        } = &mut particles.0;
-        let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
-        let limited = held.of(HolderKind::Limit).iter();
+        let Particles { state, input, .. } = &mut particles.0;
+        let free = (0..state.position.len()).filter(|&i| input.inv_mass[i] > 0.0);
+        let limited = input.held.of(HolderKind::Limit).iter();
         for i in free.chain(limited.map(|held| held.particle.index())) {
             let displacement = end.get(i) - start.get(i);
-            for points in [&mut *position, &mut *previous_position, &mut *step_position] {
+            for points in [
+                &mut state.position,
+                &mut state.previous_position,
+                &mut state.step_position,
+            ] {
                 points.add(i, displacement);
             }
         }
@@ -186,8 +170,8 @@ pub(crate) fn see_targets(
     let speed = settings.valid_teleport_speed();
     for (targets, mut samples) in &mut cloths {
         let samples = &mut *samples;
-        let missed = samples.frame + 1 != clock.frame();
-        samples.frame = clock.frame();
+        let missed = samples.frame + 1 != clock.frame;
+        samples.frame = clock.frame;
         let changed = samples.changed.replace(targets.last_changed());
         let changed = changed != Some(targets.last_changed());
         let finite = |points: &[Vec3]| points.iter().all(|p| p.is_finite());
@@ -197,7 +181,7 @@ pub(crate) fn see_targets(
             continue;
         }
         let alike = samples.seen[0].positions.len() == targets.positions.len();
-        let elsewhere = match clock.kind() {
+        let elsewhere = match clock.kind {
             _ if missed || samples.known == 0 || !alike => true,
             _ if !changed && samples.hops.velocity() == Vec3::ZERO => continue,
             FrameKind::First => true,
@@ -210,7 +194,7 @@ pub(crate) fn see_targets(
             }
         };
         if changed || elsewhere {
-            samples.see(&targets, clock.seen(), elsewhere);
+            samples.see(&targets, clock.seen, elsewhere);
             samples.jumped |= elsewhere;
         }
     }

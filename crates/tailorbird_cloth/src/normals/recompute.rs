@@ -1,6 +1,5 @@
 //! Computes the normals after each step.
 
-use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use fearless_simd::Level;
 use tailorbird_solver::{
@@ -9,15 +8,11 @@ use tailorbird_solver::{
 };
 
 use super::{ClothNormals, ClothShading};
-use crate::{
-    cloth::Cloth,
-    stages::{ClothStages, ClothStagesItem, for_each_cloth},
-    step::ClothStep,
-};
+use crate::stages::{ClothStagesItem, StagedCloths};
 
 /// Computes the normals of all cloths.
-pub fn recompute_normals(step: Res<ClothStep>, mut cloths: Query<ClothStages, With<Cloth>>) {
-    for_each_cloth(&step, &mut cloths, &|mut cloth| {
+pub fn recompute_normals(mut cloths: StagedCloths) {
+    cloths.for_each(&|mut cloth, step, _| {
         if cloth.rest.is_asleep() {
             cloth.renew(step.level());
         } else {

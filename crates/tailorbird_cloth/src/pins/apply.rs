@@ -10,7 +10,7 @@ use tailorbird_solver::{
 use super::ClothPins;
 use crate::{
     cloth::Cloth,
-    error::{ClothErrorKind, ClothErrorSource, ClothStatus},
+    error::{ClothErrorKind, ClothErrorSource, ClothStatusOf},
     material::ClothMaterial,
     particles::ClothParticles,
     topology::ClothTopology,
@@ -22,18 +22,17 @@ use crate::{
 pub fn apply_pins(
     mut cloths: Query<
         (
-            Entity,
             Ref<ClothPins>,
             Ref<ClothTopology>,
             Ref<ClothMaterial>,
             &mut ClothParticles,
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, pins, topology, material, mut particles, mut status) in &mut cloths {
+    for (pins, topology, material, mut particles, mut status) in &mut cloths {
         if !(pins.is_changed() || topology.is_changed() || material.is_changed())
             || particles.is_empty()
         {
@@ -56,13 +55,7 @@ pub fn apply_pins(
                 Err(error) => errors.push(error),
             }
         }
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Pins,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Pins, errors);
         particles.set_pins(&held);
         let errors = material.errors();
         if errors.is_empty() {
@@ -72,13 +65,7 @@ pub fn apply_pins(
         } else {
             particles.0.update_inv_masses();
         }
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Material,
-            errors,
-        );
+        status.update(&commands, ClothErrorSource::Material, errors);
     }
 }
 

@@ -31,17 +31,18 @@ pub struct ClothFrameClock {
     span: [i64; 2],
     /// Delay of sampling at both ends of that.
     delay: [i64; 2],
-    pub(super) kind: FrameKind,
+    /// Event between the places of the last two frames.
+    pub(crate) kind: FrameKind,
     /// Number of frames that have begun.
-    pub(super) frame: u64,
-    /// Number of frames that were seen at a time of their own.
-    seen: u64,
+    pub(crate) frame: u64,
+    /// Number of frames that have begun, those left out at whose start no time had passed.
+    pub(crate) seen: u64,
     /// Number of steps that have been sampled.
     pub(super) step: u64,
     /// True while the fixed loop is running.
-    pub(super) looping: bool,
+    pub(crate) looping: bool,
     /// Moment that is sampled in the step in progress.
-    pub(super) moment: Moment,
+    pub(crate) moment: Moment,
 }
 
 /// Event between the places of the last two frames.
@@ -76,31 +77,6 @@ fn nanoseconds(time: Duration) -> i64 {
 }
 
 impl ClothFrameClock {
-    /// Event between the places of the last two frames.
-    pub(crate) fn kind(&self) -> FrameKind {
-        self.kind
-    }
-
-    /// Number of frames that have begun.
-    pub(crate) fn frame(&self) -> u64 {
-        self.frame
-    }
-
-    /// The number of the last frame, those left out at whose start no time had passed.
-    pub(crate) fn seen(&self) -> u64 {
-        self.seen
-    }
-
-    /// Returns whether the fixed loop is running.
-    pub(crate) fn is_looping(&self) -> bool {
-        self.looping
-    }
-
-    /// Moment that is sampled in the step in progress.
-    pub(crate) fn moment(&self) -> Moment {
-        self.moment
-    }
-
     /// Begins a frame that ends at `elapsed` and lasts `delta`. What is seen now was put there at its beginning.
     pub(super) fn begin_frame(&mut self, elapsed: Duration, delta: Duration) {
         let (end, length) = (nanoseconds(elapsed), nanoseconds(delta));

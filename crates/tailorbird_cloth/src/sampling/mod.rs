@@ -85,8 +85,7 @@ pub use hop::{ClothHopDetector, ClothMotionTeleported};
 pub use poses::ClothSampledPoses;
 pub(crate) use poses::SampledPose;
 pub(crate) use sample::{
-    FixedLoopBegins, FixedLoopEnds, begin_fixed_step, end_fixed_step, pass_on_teleports,
-    sample_motion, sample_parents, see_frame,
+    begin_fixed_step, end_fixed_step, pass_on_teleports, sample_motion, sample_parents, see_frame,
 };
 
 /// Number of steps without motion by the fixed loop after which an entity counts as moved between frames.
@@ -156,7 +155,7 @@ impl ClothSampledMotion {
         take_along(&mut self.now, ends);
     }
 
-    /// Motion from one frame to the next, without that of the fixed loop.
+    /// Second of two places, with that of the first where the fixed loop moves the entity.
     fn moved_between(&self, [from, to]: [&Transform; 2]) -> Transform {
         let [translation, rotation, scale] = self.fixed.map(|steps| steps > 0);
         Transform {

@@ -1,6 +1,6 @@
 //! Looks where things are, at the start of each frame and at both ends of each step.
 
-use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
+use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
 use bevy_transform::{components::Transform, helper::TransformHelper};
 
@@ -9,14 +9,6 @@ use super::{
     curve::between,
 };
 use crate::{frame::ClothFrame, settings::ClothSettings, step::ClothStep};
-
-/// Runs when each step of the fixed loop begins, before all that moves things in it.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopBegins;
-
-/// Runs when each step of the fixed loop ends.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct FixedLoopEnds;
 
 /// Puts [`ClothSampledMotion`] on the parents of what has it.
 pub(crate) fn sample_parents(
@@ -181,23 +173,14 @@ pub(crate) fn sample_motion(
         } else {
             motion.fixed = [LAPSE; 3];
         }
-        let mut now = between(&motion.frames, &moment);
-        let [translation, rotation, scale] = motion.fixed.map(|steps| steps > 0);
-        if translation {
-            now.translation = place.translation;
-        }
-        if rotation {
-            now.rotation = place.rotation;
-        }
-        if scale {
-            now.scale = place.scale;
-        }
+        let sampled = between(&motion.frames, &moment);
+        let mut now = motion.moved_between([place, &sampled]);
         let told = std::mem::take(&mut motion.asked);
         if told {
             now = *place;
             motion.from = now;
             motion.frames = [now; DEPTH];
-        } else if translation {
+        } else if motion.fixed[0] > 0 {
             let from = motion.from;
             let metre = metre_of(
                 parent.filter(|_| from.translation != now.translation),

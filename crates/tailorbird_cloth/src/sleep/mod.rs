@@ -70,21 +70,11 @@ impl ClothSleep {
 
     /// Errors in these settings.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
-        let check = |field, value, allowed| {
-            ClothErrorKind::number(field, value, not_negative, allowed).into_iter()
-        };
-        check(
-            "ClothSleep.speed",
-            self.speed,
-            "at least 0 and finite [m/s]",
-        )
-        .chain(check(
-            "ClothSleep.seconds",
-            self.seconds,
-            "at least 0 and finite [s]",
-        ))
-        .collect()
+        let checks = [
+            ClothErrorKind::not_negative("ClothSleep.speed", self.speed, "m/s"),
+            ClothErrorKind::not_negative("ClothSleep.seconds", self.seconds, "s"),
+        ];
+        checks.into_iter().flatten().collect()
     }
 }
 

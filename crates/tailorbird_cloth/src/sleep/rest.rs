@@ -14,7 +14,7 @@ use crate::{
     bounds::ClothBounds,
     cloth::Cloth,
     collider::{ClothColliders, ClothLayers},
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     forces::ClothForces,
     frame::ClothFrame,
     grab::ClothGrab,
@@ -23,7 +23,7 @@ use crate::{
     normals::ClothShading,
     pins::ClothPins,
     solver::{ClothSolver, ClothSubsteps},
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    stages::{ClothStagesItem, StagedCloths},
     step::ClothStep,
     topology::ClothTopology,
     wind::ClothWindState,
@@ -54,12 +54,11 @@ fn around(
 ) -> Surroundings {
     let mut hasher = DefaultHasher::new();
     let room = ROOM + material.margin().max(0.0);
-    for collider in colliders.list.near(
-        frame,
-        bounds.bounds(),
+    let (all, layers) = (
+        &colliders.list,
         layers.copied().unwrap_or_default().layers(),
-        room,
-    ) {
+    );
+    for collider in all.near(frame, (bounds.min, bounds.max), layers, room) {
         collider.hash(&mut hasher);
     }
     Surroundings {
@@ -95,7 +94,6 @@ pub fn wake_cloths(
     colliders: Res<ClothColliders>,
     mut cloths: Query<
         (
-            Entity,
             &mut ClothSleepState,
             (
                 Ref<ClothSleep>,
@@ -113,24 +111,18 @@ pub fn wake_cloths(
             ),
             (&ClothFrame, &ClothBounds),
             (Option<&ClothLayers>, Option<&ClothSubsteps>),
-            &mut ClothStatus,
+            ClothStatusOf,
         ),
         With<Cloth>,
     >,
     commands: ParallelCommands,
 ) {
-    for (entity, mut rest, settings, acting, place, optional, mut status) in &mut cloths {
+    for (mut rest, settings, acting, place, optional, mut status) in &mut cloths {
         let (grab, forces, attached, motion) = acting;
         let (sleep, pins, material, solver, topology, shading) = settings;
         if sleep.is_changed() {
             let errors = sleep.errors();
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::Sleep,
-                errors,
-            );
+            status.update(&commands, ClothErrorSource::Sleep, errors);
         }
         if rest.is_unseen() {
             continue;
@@ -170,26 +162,13 @@ pub fn wake_cloths(
 }
 
 /// Measures how long the cloths have been at rest, and lets them settle.
-pub fn settle_cloths(
-    step: Res<ClothStep>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.settle(&step, &colliders);
-    });
+pub fn settle_cloths(mut cloths: StagedCloths) {
+    cloths.for_each_awake(&|mut cloth, step, colliders| cloth.settle(step, colliders));
 }
 
 /// Lets the cloths fall asleep that have been at rest for long enough.
-pub fn rest_cloths(
-    step: Res<ClothStep>,
-    wind: Res<ClothWindState>,
-    colliders: Res<ClothColliders>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        cloth.rest(&step, &wind, &colliders);
-    });
+pub fn rest_cloths(mut cloths: StagedCloths, wind: Res<ClothWindState>) {
+    cloths.for_each_awake(&|mut cloth, step, colliders| cloth.rest(step, &wind, colliders));
 }
 
 impl ClothStagesItem<'_, '_> {

@@ -2,7 +2,6 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use tailorbird_solver::particles::{Particles, State};
 
 use super::{ClothSeen, ClothSleep, ClothSleepState, Unseen};
 use crate::{
@@ -88,31 +87,22 @@ pub fn carry_unseen(
 impl ClothParticles {
     /// Gives the free particles the velocity of a rigid motion that takes so long \[s\].
     fn go_along(&mut self, motion: Isometry3d, seconds: f32) {
-        if self.0.state.substep_seconds <= 0.0 {
-            self.0.state.substep_seconds = seconds;
+        let state = &mut self.0.state;
+        if state.substep_seconds <= 0.0 {
+            state.substep_seconds = seconds;
         }
         let part = if seconds > 0.0 {
-            self.0.state.substep_seconds / seconds
+            state.substep_seconds / seconds
         } else {
             0.0
         };
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    lost_displacement,
-                    ..
-                },
-            ..
-        } = &mut self.0;
         let back = Isometry3d::new(
             -part * Vec3::from(motion.translation),
             Quat::IDENTITY.slerp(motion.rotation.inverse(), part.min(1.0)),
         );
-        for i in 0..position.len() {
-            previous_position.set(i, back * position.get(i));
+        for i in 0..state.position.len() {
+            (state.previous_position).set(i, back * state.position.get(i));
         }
-        lost_displacement.fill(Vec3::ZERO);
+        state.lost_displacement.fill(Vec3::ZERO);
     }
 }

@@ -1,16 +1,15 @@
 //! The air during a step: what blows, and what it does to cloths.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Isometry3d, Vec3};
 use tailorbird_solver::{
+    fingerprint,
     kernels::{
         aerodynamics::{self, Air, AirSheet},
         breeze::{self, Breeze},
         lanes::SharedPoints,
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     points::Points,
     wind::{WAVES, Wave, WindRegion, sine, strength},
     workers::Workers,
@@ -20,11 +19,10 @@ use tracing::error;
 use super::{ClothTurbulence, ClothWind, ClothWindModel, ClothWindZone, zone::is_whole_in};
 use crate::{
     bounds::ClothBounds,
-    cloth::Cloth,
-    error::{ClothErrorSource, ClothStatus},
+    error::{ClothErrorSource, ClothStatusOf},
     frame::{ClothFrame, split},
     sampling::ClothSampledPoses,
-    stages::{ClothStages, ClothStagesItem, for_each_awake},
+    stages::{ClothStagesItem, StagedCloths},
     step::ClothStep,
 };
 
@@ -93,27 +91,21 @@ impl Source {
         strength * (self.velocity + self.at.rotation * swirl)
     }
 
-    fn hash(&self, hasher: &mut impl Hasher) {
-        let numbers = |hasher: &mut _, list: &[f32]| {
-            for number in list {
-                number.to_bits().hash(hasher);
-            }
-        };
-        numbers(hasher, &self.velocity.to_array());
-        numbers(hasher, &Vec3::from(self.at.translation).to_array());
-        numbers(hasher, &self.at.rotation.to_array());
+    /// Bits of all that a cloth feels of it.
+    fn bits(&self) -> impl Iterator<Item = u32> {
         let size = match self.shape {
             WindRegion::Everywhere => Vec3::ZERO,
             WindRegion::Cuboid { half_size } => half_size,
             WindRegion::Sphere { radius } => Vec3::splat(-radius),
         };
-        numbers(hasher, &size.to_array());
         let ClothTurbulence { speed, scale, seed } = self.turbulence;
-        numbers(hasher, &[self.falloff, speed, scale]);
-        seed.hash(hasher);
-        if self.turbulence.is_some() {
-            numbers(hasher, &self.waves.map(|wave| wave.phase));
-        }
+        let waves = self.waves.iter().filter(|_| self.turbulence.is_some());
+        let vectors = [self.velocity, self.at.translation.into(), size];
+        let numbers = (vectors.into_iter().flat_map(|v| v.to_array()))
+            .chain(self.at.rotation.to_array())
+            .chain([self.falloff, speed, scale])
+            .chain(waves.map(|wave| wave.phase));
+        numbers.map(f32::to_bits).chain([seed])
     }
 }
 
@@ -126,7 +118,7 @@ pub fn prepare_wind(
     wind: Res<ClothWind>,
     poses: ClothSampledPoses,
     mut blowing: ResMut<ClothWindState>,
-    mut zones: Query<(Entity, Ref<ClothWindZone>, &mut ClothStatus)>,
+    mut zones: Query<(Ref<ClothWindZone>, ClothStatusOf)>,
     commands: ParallelCommands,
 ) {
     if wind.is_changed() {
@@ -145,30 +137,19 @@ pub fn prepare_wind(
     sources[0].velocity = valid.velocity_at(step.elapsed());
     sources[0].swirl(valid.turbulence, valid.velocity, &step);
     let mut blows = 1;
-    for (entity, zone, mut status) in &mut zones {
+    for (zone, mut status) in &mut zones {
+        let entity = status.entity;
         if zone.is_changed() {
             let errors = zone.errors();
-            ClothStatus::update(
-                &mut status,
-                entity,
-                &commands,
-                ClothErrorSource::ClothWind,
-                errors,
-            );
+            status.update(&commands, ClothErrorSource::ClothWind, errors);
         }
         let Ok(place) = poses.get(entity).map(|pose| split(&pose.end)) else {
             continue;
         };
         let error = place.as_ref().err().cloned();
-        ClothStatus::update(
-            &mut status,
-            entity,
-            &commands,
-            ClothErrorSource::Transform,
-            error,
-        );
+        status.update(&commands, ClothErrorSource::Transform, error);
         let Ok((at, scale)) = place else { continue };
-        if !status.is_ok_for(ClothErrorSource::ClothWind) {
+        if !status.list.is_ok_for(ClothErrorSource::ClothWind) {
             continue;
         }
         let known = sources[blows..]
@@ -193,14 +174,8 @@ pub fn prepare_wind(
 }
 
 /// Adds the acceleration by the wind, once per step.
-pub fn apply_wind(
-    step: Res<ClothStep>,
-    wind: Res<ClothWindState>,
-    mut cloths: Query<ClothStages, With<Cloth>>,
-) {
-    for_each_awake(&step, &mut cloths, &|mut cloth| {
-        wind.blow(&step, Workers::ALONE, &mut cloth);
-    });
+pub fn apply_wind(mut cloths: StagedCloths, wind: Res<ClothWindState>) {
+    cloths.for_each_awake(&|mut cloth, step, _| wind.blow(step, Workers::ALONE, &mut cloth));
 }
 
 /// The ball around a cloth's box: middle and radius in the world \[m\].
@@ -228,13 +203,10 @@ impl ClothWindState {
 
     /// Number that tells the air around a cloth from another.
     pub(crate) fn kind(&self, frame: &ClothFrame, bounds: &ClothBounds) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        self.valid.model.hash(&mut hasher);
-        self.valid.air_density.to_bits().hash(&mut hasher);
-        for (source, _) in self.reaching(ball(frame, bounds)) {
-            source.hash(&mut hasher);
-        }
-        hasher.finish()
+        let air = [self.valid.model as u32, self.valid.air_density.to_bits()];
+        let sources = self.reaching(ball(frame, bounds));
+        let sources = sources.flat_map(|(source, _)| source.bits());
+        fingerprint::of(air.into_iter().chain(sources))
     }
 
     /// Runs [`apply_wind`] for one cloth.
@@ -269,9 +241,16 @@ impl ClothWindState {
         let level = step.level();
         let wind = frame.vector_to_frame(velocity);
         cloth.particles.0.accelerations();
-        let particles = &mut *cloth.particles;
-        let mut per_second = if particles.0.state.substep_seconds > 0.0 {
-            particles.0.state.substep_seconds.recip()
+        let Particles {
+            state,
+            input,
+            scratch,
+            ..
+        } = &mut cloth.particles.0;
+        let (position, inv_mass) = (&state.position, &input.inv_mass);
+        let acceleration = &mut input.acceleration;
+        let mut per_second = if state.substep_seconds > 0.0 {
+            state.substep_seconds.recip()
         } else {
             0.0
         };
@@ -283,11 +262,8 @@ impl ClothWindState {
             let uneven = |(source, whole): &(&Source, bool)| !whole || source.turbulence.is_some();
             let breezes = self.reaching(ball).filter(uneven);
             let breezes = breezes.map(|(source, whole)| source.breeze(frame, whole));
-            let (position, previous) = (
-                &particles.0.state.position,
-                &particles.0.state.previous_position,
-            );
-            let with_air = &mut particles.0.scratch.previous_with_air;
+            let previous = &state.previous_position;
+            let with_air = &mut scratch.previous_with_air;
             if with_air.len() != previous.len() {
                 *with_air = Points::zeroed(previous.len());
             }
@@ -300,28 +276,10 @@ impl ClothWindState {
                 });
             }
         }
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input:
-                Input {
-                    acceleration,
-                    inv_mass,
-                    ..
-                },
-            scratch: Scratch {
-                previous_with_air, ..
-            },
-            ..
-        } = &mut particles.0;
         let previous = if varies {
-            &*previous_with_air
+            &scratch.previous_with_air
         } else {
-            &*previous_position
+            &state.previous_position
         };
         let air = Air {
             wind,

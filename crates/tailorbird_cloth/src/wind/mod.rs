@@ -114,27 +114,13 @@ impl ClothWind {
 
     /// Errors of this wind.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
-        [
+        let density = self.air_density;
+        let checks = [
             ClothErrorKind::vector("ClothWind.velocity", self.velocity),
-            ClothErrorKind::number(
-                "ClothWind.air_density",
-                self.air_density,
-                not_negative,
-                "at least 0 and finite [kg/m³]",
-            ),
-        ]
-        .into_iter()
-        .flatten()
-        .chain(
-            self.gusts
-                .errors(["ClothWind.gusts.strength", "ClothWind.gusts.period"]),
-        )
-        .chain(turbulence_errors(
-            &self.turbulence,
-            ["ClothWind.turbulence.speed", "ClothWind.turbulence.scale"],
-        ))
-        .collect()
+            ClothErrorKind::not_negative("ClothWind.air_density", density, "kg/m³"),
+        ];
+        let varies = variation_errors("ClothWind", &self.gusts, &self.turbulence);
+        checks.into_iter().chain(varies).flatten().collect()
     }
 }
 
@@ -165,41 +151,23 @@ impl ClothGusts {
         let turned = velocity * cos + aside * (velocity.length() * sin);
         turned * (1.0 + strength * speed).max(0.0)
     }
-
-    /// Errors of these gusts; `fields` names strength and period.
-    pub(crate) fn errors(&self, fields: [&'static str; 2]) -> impl Iterator<Item = ClothErrorKind> {
-        let strength = |v: f32| v >= 0.0 && v.is_finite();
-        let period = |v: f32| v > 0.0 && v.is_finite();
-        [
-            ClothErrorKind::number(
-                fields[0],
-                self.strength,
-                strength,
-                "at least 0 and finite [-]",
-            ),
-            ClothErrorKind::number(fields[1], self.period, period, "above 0 and finite [s]"),
-        ]
-        .into_iter()
-        .flatten()
-    }
 }
 
-/// Errors of turbulence; `fields` names its speed and its scale.
-fn turbulence_errors(
+/// Errors of the gusts and the turbulence of a wind.
+fn variation_errors(
+    of: &str,
+    gusts: &ClothGusts,
     turbulence: &ClothTurbulence,
-    fields: [&'static str; 2],
-) -> impl Iterator<Item = ClothErrorKind> {
-    let speed = |v: f32| v >= 0.0 && v.is_finite();
-    let scale = |v: f32| v > 0.0 && v.is_finite();
+) -> [Option<ClothErrorKind>; 4] {
+    let (positive, not_negative) = (ClothErrorKind::positive, ClothErrorKind::not_negative);
     [
-        ClothErrorKind::number(
-            fields[0],
+        not_negative(format_args!("{of}.gusts.strength"), gusts.strength, "-"),
+        positive(format_args!("{of}.gusts.period"), gusts.period, "s"),
+        not_negative(
+            format_args!("{of}.turbulence.speed"),
             turbulence.speed,
-            speed,
-            "at least 0 and finite [m/s]",
+            "m/s",
         ),
-        ClothErrorKind::number(fields[1], turbulence.scale, scale, "above 0 and finite [m]"),
+        positive(format_args!("{of}.turbulence.scale"), turbulence.scale, "m"),
     ]
-    .into_iter()
-    .flatten()
 }

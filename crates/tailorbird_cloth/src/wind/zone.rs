@@ -6,7 +6,7 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use tailorbird_solver::wind::WindRegion;
 
-use super::{ClothGusts, ClothTurbulence, turbulence_errors};
+use super::{ClothGusts, ClothTurbulence, variation_errors};
 use crate::{
     error::{ClothErrorKind, ClothStatus},
     sampling::ClothSampledMotion,
@@ -86,46 +86,22 @@ impl ClothWindZone {
 
     /// Errors of this zone.
     pub fn errors(&self) -> Vec<ClothErrorKind> {
-        let positive = |v: f32| v > 0.0 && v.is_finite();
-        let not_negative = |v: f32| v >= 0.0 && v.is_finite();
-        let size =
-            |field, value| ClothErrorKind::number(field, value, positive, "above 0 and finite [m]");
+        let size = |field, value| ClothErrorKind::positive(field, value, "m");
         let shape = match self.shape {
             ClothWindShape::Cuboid { size: sides } => {
-                let least = sides.min_element();
-                let most = sides.max_element();
-                size(
-                    "ClothWindZone.shape.size",
-                    if most.is_finite() { least } else { most },
-                )
+                let (least, most) = (sides.min_element(), sides.max_element());
+                let worst = if most.is_finite() { least } else { most };
+                size("ClothWindZone.shape.size", worst)
             }
             ClothWindShape::Sphere { radius } => size("ClothWindZone.shape.radius", radius),
         };
-        let falloff = ClothErrorKind::number(
-            "ClothWindZone.falloff",
-            self.falloff,
-            not_negative,
-            "at least 0 and finite [m]",
-        );
-        shape
-            .into_iter()
-            .chain(ClothErrorKind::vector(
-                "ClothWindZone.velocity",
-                self.velocity,
-            ))
-            .chain(falloff)
-            .chain(
-                self.gusts
-                    .errors(["ClothWindZone.gusts.strength", "ClothWindZone.gusts.period"]),
-            )
-            .chain(turbulence_errors(
-                &self.turbulence,
-                [
-                    "ClothWindZone.turbulence.speed",
-                    "ClothWindZone.turbulence.scale",
-                ],
-            ))
-            .collect()
+        let checks = [
+            shape,
+            ClothErrorKind::vector("ClothWindZone.velocity", self.velocity),
+            ClothErrorKind::not_negative("ClothWindZone.falloff", self.falloff, "m"),
+        ];
+        let varies = variation_errors("ClothWindZone", &self.gusts, &self.turbulence);
+        checks.into_iter().chain(varies).flatten().collect()
     }
 }
 

@@ -7,7 +7,6 @@ use fearless_simd::Level;
 
 use super::solid::{Solid, swept};
 use crate::{
-    bounds::Bounds,
     contact::{
         cache::ContactCache,
         colliders::{Colliders, Layers, MovingCollider},
@@ -32,6 +31,37 @@ fn merge(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
 
 fn overlap(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     a.0.cmple(b.1).all() && a.1.cmpge(b.0).all()
+}
+
+/// The reach of a solid that moves, in the axes of its poses.
+enum Reach {
+    /// Box around it.
+    Box((Vec3, Vec3)),
+    /// Planes of a half-space at both ends of its motion, each by its normal and a point, and its room \[m\].
+    HalfSpace([(Vec3, Vec3); 2], f32),
+}
+
+impl Reach {
+    /// Everything that comes within `room` \[m\] of a solid.
+    fn new(solid: &Solid, [from, to]: [Isometry3d; 2], room: f32) -> Self {
+        let Some(range) = solid.range() else {
+            let plane = |at: Isometry3d| (at.rotation * Vec3::Y, Vec3::from(at.translation));
+            return Self::HalfSpace([from, to].map(plane), room);
+        };
+        let (low, high) = swept(range, &from, &to);
+        Self::Box((low - Vec3::splat(room), high + Vec3::splat(room)))
+    }
+
+    /// Returns whether a box lies within.
+    fn meets(&self, bounds: (Vec3, Vec3)) -> bool {
+        match *self {
+            Self::Box(around) => overlap(bounds, around),
+            Self::HalfSpace(planes, room) => planes.iter().any(|&(normal, place)| {
+                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.0, bounds.1);
+                normal.dot(lowest - place) <= room
+            }),
+        }
+    }
 }
 
 impl ContactCache {
@@ -92,24 +122,13 @@ impl ContactCache {
     pub fn next(
         &self,
         solid: &Solid,
-        [from, to]: [Isometry3d; 2],
+        poses: [Isometry3d; 2],
         margin: f32,
         start: usize,
         len: usize,
     ) -> Option<Range<usize>> {
-        let room = Vec3::splat(margin + LEAVING);
-        let around = solid.range().map(|range| {
-            let (low, high) = swept(range, &from, &to);
-            (low - room, high + room)
-        });
-        let normals = [from, to].map(|at| (at.rotation * Vec3::Y, Vec3::from(at.translation)));
-        let reaches = |block: &(Vec3, Vec3)| match around {
-            Some(around) => overlap(*block, around),
-            None => normals.iter().any(|&(normal, place)| {
-                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), block.0, block.1);
-                normal.dot(lowest - place) <= room.x
-            }),
-        };
+        let reach = Reach::new(solid, poses, margin + LEAVING);
+        let reaches = |block: &(Vec3, Vec3)| reach.meets(*block);
         // The last block may be shorter than the others.
         let next = start.div_ceil(BLOCK);
         let blocks = self.blocks.get(next..)?;
@@ -148,7 +167,7 @@ impl Colliders {
     pub fn near(
         &self,
         frame: &Frame,
-        bounds: Bounds,
+        bounds: (Vec3, Vec3),
         layers: Layers,
         room: f32,
     ) -> impl Iterator<Item = impl Hash> {
@@ -171,21 +190,9 @@ impl Colliders {
 
 impl MovingCollider {
     /// Returns whether it may come within `room` \[m\] of a cloth's box.
-    fn reaches(&self, frame: &Frame, bounds: Bounds, room: f32) -> bool {
+    fn reaches(&self, frame: &Frame, bounds: (Vec3, Vec3), room: f32) -> bool {
         let frame = frame.isometry().inverse();
-        let [start, end] = [self.start, self.end].map(|at| frame * at);
-        let room = room + self.margin;
-        match self.solid.range() {
-            Some(range) => {
-                let (low, high) = swept(range, &start, &end);
-                let room = Vec3::splat(room);
-                overlap((low - room, high + room), (bounds.min, bounds.max))
-            }
-            None => [start, end].iter().any(|at| {
-                let normal = at.rotation * Vec3::Y;
-                let lowest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.min, bounds.max);
-                normal.dot(lowest - Vec3::from(at.translation)) <= room
-            }),
-        }
+        let poses = [self.start, self.end].map(|at| frame * at);
+        Reach::new(&self.solid, poses, room + self.margin).meets(bounds)
     }
 }

@@ -3,9 +3,7 @@
 use bevy_math::Vec3;
 
 use super::bodies::{Bodies, Coupling};
-use crate::{
-    contact::colliders::ColliderId, kernels::patches::Patches, memory::heap, points::Points,
-};
+use crate::{contact::colliders::ColliderId, kernels::patches::Patches, memory_bytes};
 
 /// Colliders near a cloth, and its contacts with them; scratch of a step.
 #[derive(Clone, Debug, Default)]
@@ -30,17 +28,14 @@ pub struct ContactCache {
     pub passing: Vec<ColliderId>,
 }
 
+memory_bytes!(ContactCache: near, blocks, found, couplings);
+
 impl ContactCache {
     /// Drops the results of the step before.
     pub fn begin_step(&mut self) {
         self.holds = None;
         self.stage = None;
         self.bodies.clear();
-    }
-
-    /// Memory on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.near) + heap(&self.blocks) + heap(&self.found) + heap(&self.couplings)
     }
 }
 
@@ -53,19 +48,4 @@ pub struct MeshPlanes {
     pub outdated: Vec<usize>,
 }
 
-impl MeshPlanes {
-    /// Memory on the heap \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        let Patches {
-            normal,
-            offset,
-            place,
-            holds,
-        } = &self.patches;
-        let points = [normal, place].map(Points::memory_bytes);
-        points.iter().sum::<usize>()
-            + offset.memory_bytes()
-            + holds.memory_bytes()
-            + heap(&self.outdated)
-    }
-}
+memory_bytes!(MeshPlanes: patches.normal, patches.offset, patches.place, patches.holds, outdated);

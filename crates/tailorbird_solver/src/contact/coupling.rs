@@ -13,7 +13,7 @@ use crate::{
     cloth::ClothData,
     contact::colliders::{Colliders, MovingCollider, combined_friction},
     kernels::contact::Phase,
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     points::Points,
     substep::Substep,
 };
@@ -76,16 +76,8 @@ impl Colliders {
             }
             let w = particles.input.inv_mass[i];
             let before = last.then(|| known.map_or(0.0, |coupling| coupling.pressed));
-            let Particles {
-                state:
-                    State {
-                        position,
-                        previous_position,
-                        ..
-                    },
-                ..
-            } = &mut *particles;
-            let path = [position, previous_position];
+            let state = &mut particles.state;
+            let path = [&mut state.position, &mut state.previous_position];
             let impulse = struck.strike(contact, frame, (i, w), before, path);
             let pressed = impulse + before.unwrap_or(0.0);
             if w > 0.0 && (pressed > 0.0 || !last) {
@@ -116,13 +108,12 @@ impl Colliders {
         }
         let frame = &*cloth.frame;
         let Particles {
-            state: State {
-                previous_position, ..
-            },
-            input: Input { inv_mass, .. },
-            scratch: Scratch { contacts, .. },
+            state,
+            input,
+            scratch,
             ..
         } = &mut *cloth.particles;
+        let (inv_mass, contacts) = (&input.inv_mass, &mut scratch.contacts);
         contacts.pressed.clear();
         if !couplings.is_empty() {
             contacts.pressed.resize(inv_mass.len(), 0.0);
@@ -139,7 +130,7 @@ impl Colliders {
             };
             for coupling in group {
                 let i = coupling.particle;
-                let before = frame.to_world(previous_position.get(i));
+                let before = frame.to_world(state.previous_position.get(i));
                 let along = frame.vector_to_world(coupling.normal);
                 let w = inv_mass[i];
                 let share = w / (w + count * struck.inv_mass_at(before, along));
@@ -161,17 +152,13 @@ impl Colliders {
         let mut couplings = mem::take(&mut cache.couplings);
         let frame = &*cloth.frame;
         let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input: Input { inv_mass, .. },
-            scratch: Scratch { contacts, .. },
+            state,
+            input,
+            scratch,
             ..
         } = &mut *cloth.particles;
-        let pins = motion_of_pins(inv_mass, [previous_position, position]);
+        let (inv_mass, contacts) = (&input.inv_mass, &mut scratch.contacts);
+        let pins = motion_of_pins(inv_mass, [&state.previous_position, &state.position]);
         for group in couplings.chunk_by_mut(|a, b| a.collider == b.collider) {
             let body = group[0].body;
             let Some(mut proxy) = cache.bodies.list.get(body).copied() else {
@@ -191,11 +178,11 @@ impl Colliders {
                 let i = coupling.particle;
                 let mut pushed = coupling.share * contacts.pressed.get(i).copied().unwrap_or(0.0);
                 let mut held = coupling.held.max(0.0);
-                let path = [previous_position.get(i), position.get(i)];
+                let path = [state.previous_position.get(i), state.position.get(i)];
                 let meets = collider.nearest(&motion, margin, cache, i, path).depth >= 0.0;
                 if pushed > 0.0 || !meets {
                     let to = path[1] + coupling.normal * (inv_mass[i] * pushed);
-                    position.set(i, to);
+                    state.position.set(i, to);
                     (pushed, held) = (0.0, 0.0);
                 }
                 coupling.held = held * coupling.mass - pushed;
@@ -212,7 +199,7 @@ impl Colliders {
             // The part by which pins pull back an earlier excess gives the body no velocity.
             let stopped = pins.map_or(1.0, |_| struck.stopped_by(&pulled));
             for coupling in group {
-                let before = frame.to_world(previous_position.get(coupling.particle));
+                let before = frame.to_world(state.previous_position.get(coupling.particle));
                 let pull = frame.vector_to_world(coupling.normal) * -mem::take(&mut coupling.held);
                 struck.push(before, pull * stopped);
                 struck.shift(before, pull * (1.0 - stopped));

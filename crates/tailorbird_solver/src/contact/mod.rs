@@ -19,7 +19,6 @@ use crate::{
     coefficients::Method,
     contact::colliders::{Colliders, MovingCollider},
     kernels::contact::{Phase, Touch},
-    particles::{Particles, State},
     substep::Substep,
 };
 
@@ -79,16 +78,8 @@ impl Colliders {
             self.hand_over(substep, cloth, &mut cache);
         }
         let layers = cloth.layers;
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            ..
-        } = &*cloth.particles;
-        let points = [position, previous_position];
+        let state = &cloth.particles.state;
+        let points = [&state.position, &state.previous_position];
         let stage = (substep.level, (substep.index, phase == Phase::Final));
         let margin = cloth.coefficients.margin;
         cache.find_colliders(self, cloth.frame, layers, margin, stage, points);

@@ -28,7 +28,7 @@ use crate::{
         sphere::{self, MovingSphere},
         terrain::Terrain,
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     substep::Substep,
 };
 
@@ -103,21 +103,18 @@ fn touching<'a>(
     out: Out<'a>,
 ) -> Touching<'a> {
     let Particles {
-        state: State {
-            position,
-            previous_position,
-            ..
-        },
-        input: Input { inv_mass, .. },
-        scratch: Scratch { contacts, .. },
+        state,
+        input,
+        scratch,
         ..
     } = particles;
+    let (inv_mass, contacts) = (&mut input.inv_mass, &mut scratch.contacts);
     let known = note
         && contacts.depth.len() == inv_mass.len()
         && (phase == Phase::Approach || contacts.any);
     Touching {
-        position: SharedPoints::new(position),
-        previous: SharedPoints::new(previous_position),
+        position: SharedPoints::new(&mut state.position),
+        previous: SharedPoints::new(&mut state.previous_position),
         inv_mass: Shared::new(inv_mass),
         contacts: known.then(|| {
             (

@@ -7,7 +7,7 @@ use super::*;
 use crate::{
     effort::Effort,
     shape::ClothShape,
-    topology::{Topology, test_meshes::delaunay},
+    topology::{Topology, fabric::Fabric, test_meshes::delaunay},
 };
 
 const SECONDS: f32 = 1.0 / 60.0;
@@ -28,7 +28,7 @@ fn moved(topology: &Topology, to: impl Fn(Vec3) -> Vec3) -> Points {
 
 /// Excess of the edges' lengths over their granted lengths, as a part of those at rest: least and greatest [-].
 fn beyond(grant: &Grant, fabric: &Fabric, position: &Points) -> [f32; 2] {
-    let chains = fabric.chains();
+    let chains = &fabric.chains;
     let lengths = grant.chains(chains);
     let beyond = chains.slots().map(|(slot, ends)| {
         let [a, b] = ends.map(|i| position.get(i as usize));
@@ -50,7 +50,7 @@ proptest! {
         let position = moved(&topology, |p| p * Vec3::new(1.0 + u, 1.0 + v, 1.0));
         let mut grant = Grant::default();
         for _ in 0..60 {
-            grant.renew(Threads::Mesh(fabric), &position, SECONDS, Effort::asking(true));
+            grant.renew(&topology.layout, &position, SECONDS, Effort::asking(true));
         }
         let [low, high] = beyond(&grant, fabric, &position);
         let most = u.max(v);
@@ -76,7 +76,7 @@ proptest! {
         let position = moved(&topology, |p| p * Vec3::new(1.0 + v, 1.0 + u, 1.0));
         let mut grant = Grant::default();
         for _ in 0..60 {
-            grant.renew(Threads::Sheet(lattice), &position, SECONDS, Effort::asking(true));
+            grant.renew(&topology.layout, &position, SECONDS, Effort::asking(true));
         }
         let n = topology.particles();
         let granted = |strain: f32| (strain - BORNE - taken_back(strain) / GROWTH).max(0.0);
@@ -107,41 +107,23 @@ fn what_is_granted_is_taken_back_at_its_rate() {
     let position = moved(&topology, |p| p * Vec3::new(1.2, 1.0, 1.0));
     let mut grant = Grant::default();
     for _ in 0..60 {
-        grant.renew(
-            Threads::Mesh(fabric),
-            &position,
-            SECONDS,
-            Effort::asking(true),
-        );
+        grant.renew(&topology.layout, &position, SECONDS, Effort::asking(true));
     }
     let start = grant.largest();
     assert!((0.15..0.25).contains(&start), "{start}");
     let mut steps = 0;
     while grant.largest() > 0.5 * start {
-        grant.renew(
-            Threads::Mesh(fabric),
-            &position,
-            SECONDS,
-            Effort::asking(false),
-        );
+        grant.renew(&topology.layout, &position, SECONDS, Effort::asking(false));
         steps += 1;
     }
     let half = steps as f32 * SECONDS;
     let [fastest, slowest] = [start, 0.5 * start].map(|g| 0.5 * start / (UNUSED * taken_back(g)));
     assert!((fastest..slowest + SECONDS).contains(&half), "{half} s");
     for _ in 0..300 {
-        grant.renew(
-            Threads::Mesh(fabric),
-            &position,
-            SECONDS,
-            Effort::asking(false),
-        );
+        grant.renew(&topology.layout, &position, SECONDS, Effort::asking(false));
     }
     assert!(grant.is_empty());
-    assert_eq!(
-        grant.chains(fabric.chains()),
-        &fabric.chains().rest_length[..]
-    );
+    assert_eq!(grant.chains(&fabric.chains), &fabric.chains.rest_length[..]);
 }
 
 /// Runs a trial for so many steps on a cloth whose `strain` is a function of its grant; returns the last [granted, strain].
@@ -191,16 +173,11 @@ fn what_is_not_finite_is_not_granted() {
         position.set(7, Vec3::splat(bad));
         let mut grant = Grant::default();
         for _ in 0..10 {
-            grant.renew(
-                Threads::Mesh(fabric),
-                &position,
-                SECONDS,
-                Effort::asking(true),
-            );
+            grant.renew(&topology.layout, &position, SECONDS, Effort::asking(true));
         }
         let finite = |lengths: &[f32]| lengths.iter().all(|l| (0.0..1.0).contains(l));
-        assert!(finite(grant.chains(fabric.chains())), "{bad}");
-        assert!(finite(grant.springs(fabric.shear())), "{bad}");
+        assert!(finite(grant.chains(&fabric.chains)), "{bad}");
+        assert!(finite(grant.springs(&fabric.shear)), "{bad}");
         assert!(grant.largest() <= MOST, "{bad}");
     }
 }

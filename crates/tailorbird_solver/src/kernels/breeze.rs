@@ -38,10 +38,7 @@ pub fn add(
     range: Range<usize>,
 ) {
     assert!(
-        range.end <= position.len()
-            && [out.x, out.y, out.z]
-                .iter()
-                .all(|o| o.len() == position.len()),
+        range.end <= position.len() && out.is_of(position.len()),
         "one of each for {} particles",
         position.len()
     );

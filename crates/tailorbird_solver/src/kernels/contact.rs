@@ -67,15 +67,9 @@ pub struct Contacts {
 impl Contacts {
     /// Forgets all contacts, and sets `any` to false.
     pub fn clear(&mut self) {
-        for values in [
-            &mut self.normal.x,
-            &mut self.normal.y,
-            &mut self.normal.z,
-            &mut self.depth,
-            &mut self.pressed,
-        ] {
-            values.clear();
-        }
+        self.normal.clear();
+        self.depth.clear();
+        self.pressed.clear();
         self.any = false;
     }
 
@@ -84,15 +78,10 @@ impl Contacts {
         if !self.any && self.depth.len() == len {
             return;
         }
-        for values in [
-            &mut self.normal.x,
-            &mut self.normal.y,
-            &mut self.normal.z,
-            &mut self.depth,
-        ] {
-            values.clear();
-            values.resize(len, 0.0);
-        }
+        self.normal.clear();
+        self.normal.resize(len, 0.0);
+        self.depth.clear();
+        self.depth.resize(len, 0.0);
         self.any = false;
     }
 }
@@ -157,11 +146,10 @@ impl<'a> Touching<'a> {
     /// When one of these does not hold.
     pub fn check(&self, range: &Range<usize>) {
         let len = self.inv_mass.len();
-        let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
         let contacts = self
             .contacts
-            .is_none_or(|(normal, depth)| points(normal) && depth.len() == len);
-        let all = points(self.position) && points(self.previous) && range.end <= len;
+            .is_none_or(|(normal, depth)| normal.is_of(len) && depth.len() == len);
+        let all = self.position.is_of(len) && self.previous.is_of(len) && range.end <= len;
         assert!(
             all && contacts,
             "one of each for {len} particles, {range:?} of them"

@@ -284,6 +284,18 @@ impl<'a> SharedPoints<'a> {
         }
     }
 
+    /// Returns whether there are exactly `len` of each coordinate.
+    #[inline(always)]
+    pub fn is_of(self, len: usize) -> bool {
+        [self.x, self.y, self.z].map(Shared::len) == [len; 3]
+    }
+
+    /// Returns whether there are at least `len` of each coordinate.
+    #[inline(always)]
+    pub fn has(self, len: usize) -> bool {
+        [self.x, self.y, self.z].iter().all(|axis| axis.len >= len)
+    }
+
     #[inline(always)]
     pub fn load<S: Simd>(self, simd: S, i: usize) -> V3<S> {
         V3 {
@@ -328,6 +340,49 @@ impl Points {
         }
     }
 }
+
+/// Calls `f` for the lanes that a mask names.
+#[inline(always)]
+pub fn each_lane<S: Simd>(simd: S, mask: S::mask32s, mut f: impl FnMut(usize)) {
+    if mask.any_true() {
+        let [zero, one] = [0.0, 1.0].map(|value| S::f32s::splat(simd, value));
+        let named = mask.select(one, zero);
+        for (k, lane) in named.as_slice().iter().enumerate() {
+            if *lane != 0.0 {
+                f(k);
+            }
+        }
+    }
+}
+
+/// Calls a kernel for two instruction sets only: there are many that few cloths need, and each instruction set takes long to compile.
+macro_rules! for_few {
+    ($level:expr, $simd:ident => $do:expr) => {{
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let level = $level
+            .as_avx2()
+            .map_or(fearless_simd::Level::fallback(), fearless_simd::Level::Avx2);
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let level = $level;
+        match level {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Avx2($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $do,
+            ),
+            #[cfg(target_arch = "aarch64")]
+            fearless_simd::Level::Neon($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $do,
+            ),
+            _ => {
+                let $simd = fearless_simd::Fallback::new();
+                $do
+            }
+        }
+    }};
+}
+pub(super) use for_few;
 
 #[cfg(test)]
 pub use crate::instruction_set::levels;

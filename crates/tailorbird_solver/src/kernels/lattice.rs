@@ -32,7 +32,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::{
     edges::{Edge, LineStiffness, Whole},
     edges::{LineLengths, SheetLines},
-    lanes::{Shared, SharedPoints, V3, WIDEST, Window, with_scratch},
+    lanes::{Shared, SharedPoints, V3, WIDEST, Window, for_few, with_scratch},
     line,
     lines::{FREE, Give, Lines, PRESSED, TOUCHING},
     tile::Tile,
@@ -75,15 +75,10 @@ impl Sheet<'_> {
     pub fn check(&self) {
         let n = self.columns * self.rows;
         // Particles that are split off the sheet follow those of its columns and rows.
-        let points = |p: SharedPoints| {
-            [p.x.len(), p.y.len(), p.z.len()]
-                .iter()
-                .all(|len| *len >= n)
-        };
         assert!(
-            points(self.position)
+            self.position.has(n)
                 && self.inv_mass.len() >= n
-                && self.normal.is_none_or(points)
+                && self.normal.is_none_or(|normal| normal.has(n))
                 && self.pressed.is_none_or(|pressed| pressed.len() >= n)
                 && self.lengths.is_none_or(|lengths| lengths.are_of(n)),
             "a sheet of {} x {} particles",
@@ -104,33 +99,6 @@ impl Lengths<'_> {
 const PLAIN: u8 = 0;
 const BODIES: u8 = 1;
 const GRANTED: u8 = 2;
-
-/// Calls a kernel for two instruction sets only: special sheets are few, and each instruction set takes long to compile.
-macro_rules! for_few {
-    ($level:expr, $simd:ident => $do:expr) => {{
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let level = $level.as_avx2().map_or(Level::fallback(), Level::Avx2);
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let level = $level;
-        match level {
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2($simd) => $simd.vectorize(
-                #[inline(always)]
-                || $do,
-            ),
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon($simd) => $simd.vectorize(
-                #[inline(always)]
-                || $do,
-            ),
-            _ => {
-                let $simd = fearless_simd::Fallback::new();
-                $do
-            }
-        }
-    }};
-}
-pub(super) use for_few;
 
 /// Solves each column of a range.
 pub fn solve_columns(level: Level, sheet: Sheet, stiffness: LineStiffness, columns: Range<usize>) {

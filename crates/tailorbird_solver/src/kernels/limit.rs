@@ -51,12 +51,11 @@ pub fn hold(
     range: Range<usize>,
 ) {
     let len = inv_mass.len();
-    let points = |p: SharedPoints| [p.x.len(), p.y.len(), p.z.len()] == [len; 3];
     let backstop = limits.backstop.is_none_or(|backstop| {
         backstop.normals.iter().all(|p| p.is_of(len))
             && [backstop.distance, backstop.radius].map(<[f32]>::len) == [len; 2]
     });
-    let all = points(position) && points(previous) && range.end <= len;
+    let all = position.is_of(len) && previous.is_of(len) && range.end <= len;
     let targets = limits.targets.iter().all(|p| p.is_of(len));
     assert!(
         all && backstop && targets && limits.max_distance.len() == len,

@@ -11,8 +11,8 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     edges::{MeshLines, Whole},
-    lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
-    lattice::{Block, for_few},
+    lanes::{Shared, SharedPoints, V3, WIDEST, for_few, with_scratch},
+    lattice::Block,
     line,
     lines::{FREE, Give, Lines, NO_MASS, PRESSED, TOUCHING},
     packed::{Packed, inv_mass, of_space, squared},
@@ -54,15 +54,14 @@ impl Mesh<'_> {
     /// When they are not.
     #[inline(always)]
     fn check(&self) {
-        let n = self.fabric.particles();
+        let n = self.fabric.particles;
         // Particles that are split off follow those of the mesh.
-        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
         assert!(
-            points(self.position)
+            self.position.has(n)
                 && self.inv_mass.len() >= n
-                && self.normal.is_none_or(points)
+                && self.normal.is_none_or(|normal| normal.has(n))
                 && self.pressed.is_none_or(|pressed| pressed.len() >= n)
-                && self.rest_length.len() == self.fabric.chains().particle.len(),
+                && self.rest_length.len() == self.fabric.chains.particle.len(),
             "a mesh of {n} particles"
         );
     }
@@ -82,7 +81,7 @@ impl<'a> Lanes<'a> {
         let at = start + k * LANES;
         Self {
             particles: &slots[at..][..S::f32s::LEN],
-            run: fabric.runs()[at / LANES],
+            run: fabric.runs[at / LANES],
         }
     }
 
@@ -132,7 +131,7 @@ impl<'a> Lanes<'a> {
 /// Solves the chains of a range of batches. `stretch` is α̃ of an edge whose scale is 1 [1/kg].
 pub fn solve_chains(level: Level, mesh: Mesh, stretch: f32, batches: Range<usize>) {
     mesh.check();
-    let batches = &mesh.fabric.chains().batches[batches];
+    let batches = &mesh.fabric.chains.batches[batches];
     let longest = batches.iter().map(|batch| batch.length).max().unwrap_or(0);
     with_scratch(longest * WIDEST * 13, |scratch| {
         for batch in batches {
@@ -154,7 +153,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
     scratch: &mut [f32],
 ) {
     let (m, n) = (batch.length, S::f32s::LEN);
-    let chains = mesh.fabric.chains();
+    let chains = &mesh.fabric.chains;
     let (factors, rest) = scratch.split_at_mut(2 * m * n);
     let factors = Shared::new(factors);
     let block = Block::new(rest, m, n);
@@ -167,7 +166,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
         let (zero, quarter) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 0.25));
         let mut lightest = S::f32s::splat(simd, NO_MASS);
         for k in 0..m {
-            let lanes = Lanes::of_link::<S>(mesh.fabric, mesh.fabric.particle_or_last(), start, k);
+            let lanes = Lanes::of_link::<S>(mesh.fabric, &mesh.fabric.particle_or_last, start, k);
             let w = lanes.load(simd, mesh.inv_mass);
             // As in `line`, a particle at an end counts half; only the end at the start of a chain is known here.
             lightest = lightest.max(if k == 0 { w * 0.5 } else { w });
@@ -274,7 +273,7 @@ pub fn exchange(
     viscosity: f32,
     areal_density: f32,
 ) {
-    let n = fabric.particles();
+    let n = fabric.particles;
     assert!(
         position.has(n) && previous.has(n) && lost.has(n) && inv_masses.len() >= n,
         "a mesh of {n} particles"
@@ -302,7 +301,7 @@ pub fn exchange(
         for moving in &mut *moving {
             moving[3..].fill(0.0);
         }
-        for exchange in fabric.exchanges() {
+        for exchange in &fabric.exchanges {
             let [a, b] = exchange.ends.map(|i| i as usize);
             let conductance = areal_density * exchange.weight * viscosity.min(exchange.limit);
             let halves = |i: usize| {

@@ -58,11 +58,7 @@ pub fn smooth_lattice(
     let size = [lattice.columns, lattice.rows].map(|n| n as usize);
     let n = size[0] * size[1];
     assert!(position.has(n), "positions of a sheet");
-    let all = [normals.x, normals.y, normals.z];
-    assert!(
-        all.iter().all(|values| values.len() >= n),
-        "normals of a sheet"
-    );
+    assert!(normals.has(n), "normals of a sheet");
     assert!(rows.end <= size[1], "rows of a sheet");
     let smooth = Smooth { position, normals };
     with_cells(size[0], |scratch| {

@@ -7,7 +7,7 @@ use bevy_math::Vec3;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    lanes::{Reading, V3, Window, each_window},
+    lanes::{Reading, V3, Window, each_lane, each_window},
     solid::{DistanceFunction, Distances, Motion},
 };
 use crate::{numbers::Numbers, points::Points};
@@ -105,7 +105,6 @@ fn outdated_with<S: Simd>(
     mut found: impl FnMut(usize),
 ) {
     let zero = S::f32s::splat(simd, 0.0);
-    let one = S::f32s::splat(simd, 1.0);
     let to = V3::splat(simd, motion.to);
     let inverse = motion.axes.transpose();
     each_window(
@@ -120,14 +119,7 @@ fn outdated_with<S: Simd>(
             let free = Reading(inv_mass).load_at(simd, window).simd_gt(zero);
             let valid = holds.simd_ge(zero) & moved.dot(moved).simd_le(holds * holds);
             let out = free & window.todo(simd) & !valid;
-            if out.any_true() {
-                let lanes = out.select(one, zero);
-                for (k, lane) in lanes.as_slice().iter().enumerate() {
-                    if *lane != 0.0 {
-                        found(window.at + k);
-                    }
-                }
-            }
+            each_lane(simd, out, |k| found(window.at + k));
         },
     );
 }

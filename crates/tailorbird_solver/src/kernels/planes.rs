@@ -4,7 +4,7 @@ use bevy_math::{Vec3, Vec4};
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
-    lanes::{Reading, V3, WIDEST, Window, each_window},
+    lanes::{Reading, V3, WIDEST, Window, each_lane, each_window},
     solid::{DistanceFunction, Distances, lane},
 };
 use crate::{numbers::Numbers, points::Points};
@@ -119,7 +119,6 @@ impl Planes<'_> {
         let rounding = 1e-5 * (highest.abs() + middle.abs().max_element() + apart2.sqrt());
         let highest = S::f32s::splat(simd, highest - rounding);
         let normal = V3::splat(simd, normal);
-        let one = S::f32s::splat(simd, 1.0);
         let zero = S::f32s::splat(simd, 0.0);
         each_window(
             simd,
@@ -130,14 +129,9 @@ impl Planes<'_> {
                 let turned = self.planes.normal.window(simd, window, 0) - normal;
                 let turned2 = turned.dot(turned) * (1.001 * apart2);
                 let candidates = (further * further).simd_le(turned2);
-                if candidates.any_true() {
-                    let lanes = candidates.select(one, zero);
-                    for (k, lane) in lanes.as_slice().iter().enumerate() {
-                        if *lane != 0.0 {
-                            nearest = nearest.with(simd, self.planes, window.at + k, p);
-                        }
-                    }
-                }
+                each_lane(simd, candidates, |k| {
+                    nearest = nearest.with(simd, self.planes, window.at + k, p);
+                });
             },
         );
         nearest

@@ -12,8 +12,7 @@ pub fn change_frame(
     rotation: Mat3,
     shift: Vec3,
     inv_mass: &[f32],
-    position: &mut Points,
-    previous: &mut Points,
+    [position, previous]: [&mut Points; 2],
 ) {
     for (i, w) in inv_mass.iter().enumerate() {
         let place = rotation * position.get(i) + shift;

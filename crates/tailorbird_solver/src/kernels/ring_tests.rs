@@ -38,7 +38,7 @@ fn fabric(topology: &Topology) -> &Fabric {
 
 /// Solves the rings alone, so many times.
 fn solve(fabric: &Fabric, position: &mut Points, inv_mass: &mut [f32], give: Give, times: usize) {
-    let chains = fabric.chains();
+    let chains = &fabric.chains;
     let rings = (chains.passes.iter())
         .filter(|pass| {
             let mut batches = chains.batches[pass.batches.clone()].iter();
@@ -63,7 +63,7 @@ fn solve(fabric: &Fabric, position: &mut Points, inv_mass: &mut [f32], give: Giv
 
 /// Shortest and longest edge around, relative to their length at rest.
 fn around(fabric: &Fabric, position: &Points) -> [f32; 2] {
-    let edges = fabric.chains().edges().filter(|(ends, _)| {
+    let edges = fabric.chains.edges().filter(|(ends, _)| {
         let [a, b] = ends.map(|i| position.get(i as usize));
         (a.y - b.y).abs() < 0.5
     });

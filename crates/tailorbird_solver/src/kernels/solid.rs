@@ -12,7 +12,7 @@ use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
     contact::{Touching, unit},
-    lanes::{V3, Window, each_window},
+    lanes::{V3, Window, each_lane, each_window, for_few},
 };
 
 /// Number of planes that a long path is followed by.
@@ -186,22 +186,7 @@ pub fn collide_all<Q: DistanceFunction>(
     if Q::COMMON {
         return dispatch!(level, simd => collide_all_with(simd, solid, motion, particles, range));
     }
-    // Two instruction sets only: there are many solids, and each takes long to compile.
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    let level = level.as_avx2().map_or(Level::fallback(), Level::Avx2);
-    match level {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(simd) => simd.vectorize(
-            #[inline(always)]
-            || collide_all_with(simd, solid, motion, particles, range),
-        ),
-        #[cfg(target_arch = "aarch64")]
-        Level::Neon(simd) => simd.vectorize(
-            #[inline(always)]
-            || collide_all_with(simd, solid, motion, particles, range),
-        ),
-        _ => collide_all_with(Fallback::new(), solid, motion, particles, range),
-    }
+    for_few!(level, simd => collide_all_with(simd, solid, motion, particles, range))
 }
 
 #[inline(always)]
@@ -332,7 +317,6 @@ fn find_with<S: Simd, Q: DistanceFunction>(
     mut found: impl FnMut(usize),
 ) {
     let zero = S::f32s::splat(simd, 0.0);
-    let one = S::f32s::splat(simd, 1.0);
     let (from, to) = (V3::splat(simd, motion.from), V3::splat(simd, motion.to));
     let inverse = motion.axes.transpose();
     each_window(
@@ -350,14 +334,7 @@ fn find_with<S: Simd, Q: DistanceFunction>(
             ];
             let near = meet(simd, solid, window, local, free);
             let touching = free & near.distance.simd_lt(zero);
-            if touching.any_true() {
-                let lanes = touching.select(one, zero);
-                for (k, lane) in lanes.as_slice().iter().enumerate() {
-                    if *lane != 0.0 {
-                        found(window.at + k);
-                    }
-                }
-            }
+            each_lane(simd, touching, |k| found(window.at + k));
         },
     );
 }

@@ -90,11 +90,7 @@ fn survey_with<S: Simd>(simd: S, sheet: Sheet, spacing: Vec2, allowed: f32) -> S
 pub fn stop(level: Level, sheet: Sheet, previous: SharedPoints, spacing: Vec2, whole: RigidMotion) {
     sheet.check();
     let n = sheet.columns * sheet.rows;
-    let lengths = [previous.x.len(), previous.y.len(), previous.z.len()];
-    assert!(
-        lengths.iter().all(|len| *len >= n),
-        "one of each for {n} particles"
-    );
+    assert!(previous.has(n), "one of each for {n} particles");
     dispatch!(level, simd => stop_with(simd, sheet, previous, spacing, whole));
 }
 

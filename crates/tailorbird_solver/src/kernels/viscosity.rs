@@ -71,8 +71,7 @@ impl SheetMotion<'_> {
     fn check(&self) {
         self.sheet.check();
         let n = self.sheet.columns * self.sheet.rows;
-        let points = |p: SharedPoints| [p.x, p.y, p.z].iter().all(|values| values.len() >= n);
-        let all = points(self.previous) && points(self.lost);
+        let all = self.previous.has(n) && self.lost.has(n);
         assert!(
             all && self.acceleration.is_none_or(|a| a.has(n)),
             "one of each for {n} particles"

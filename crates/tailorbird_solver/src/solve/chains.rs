@@ -17,7 +17,7 @@ use crate::{
         verlet::Verlet,
         viscosity::{self, Beside, SheetMotion},
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     points::Points,
     substep::Substep,
     tethers::{Anchors, Tethers},
@@ -101,7 +101,7 @@ impl Pass<'_> {
             Layout::Sheet(SheetLayout { lattice, .. }) => {
                 lattice.rows.max(lattice.columns) as f32 * lattice.spacing.max_element()
             }
-            Layout::Mesh(fabric) => fabric.size(),
+            Layout::Mesh(fabric) => fabric.size,
         }
     }
 
@@ -128,32 +128,26 @@ impl Pass<'_> {
         [columns, rows]: [usize; 2],
     ) -> (Sheet<'a>, SharedPoints<'a>) {
         let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    effort,
-                    grant,
-                    ..
-                },
-            input: Input { inv_mass, .. },
-            scratch: Scratch { contacts, .. },
+            state,
+            input,
+            scratch,
             ..
         } = particles;
-        let granted = grant.overall();
+        let contacts = &mut scratch.contacts;
+        let granted = state.grant.overall();
         let sheet = Sheet {
             columns,
             rows,
-            position: SharedPoints::new(position),
-            inv_mass: Shared::new(inv_mass),
+            position: SharedPoints::new(&mut state.position),
+            inv_mass: Shared::new(&mut input.inv_mass),
             normal: contacts
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
-            give: self.give(*effort, granted, contacts.any),
-            lengths: grant.sheet(columns * rows),
+            give: self.give(state.effort, granted, contacts.any),
+            lengths: state.grant.sheet(columns * rows),
         };
-        (sheet, SharedPoints::new(previous_position))
+        (sheet, SharedPoints::new(&mut state.previous_position))
     }
 
     pub fn is_odd(&self) -> bool {
@@ -275,26 +269,14 @@ pub fn integrate(
     }
     let density = particles.input.areal_density;
     let Particles {
-        state:
-            State {
-                position,
-                previous_position,
-                lost_displacement,
-                ..
-            },
-        input:
-            Input {
-                acceleration,
-                mass,
-                inv_mass,
-                ..
-            },
-        scratch: Scratch {
-            lambda: scratch, ..
-        },
+        state,
+        input,
+        scratch,
         ..
     } = particles;
-    let rigid = RigidMotion::fit(mass, position, previous_position);
+    let (position, previous) = (&mut state.position, &mut state.previous_position);
+    let (lost, inv_mass) = (&mut state.lost_displacement, &mut input.inv_mass);
+    let rigid = RigidMotion::fit(&input.mass, position, previous);
     match &topology.layout {
         Layout::Sheet(SheetLayout { lattice, .. }) => {
             let area = lattice.spacing.x * lattice.spacing.y;
@@ -302,27 +284,20 @@ pub fn integrate(
             let c = (4.0 * material.viscosity * seconds_before / area).min(viscosity::LARGEST);
             let motion = SheetMotion {
                 sheet: bare(lattice, position, inv_mass),
-                previous: SharedPoints::new(previous_position),
-                lost: SharedPoints::new(lost_displacement),
-                acceleration: (!acceleration.is_empty()).then_some(&*acceleration),
+                previous: SharedPoints::new(previous),
+                lost: SharedPoints::new(lost),
+                acceleration: Some(&input.acceleration).filter(|a| !a.is_empty()),
                 conductance: 0.25 * c * density * area,
                 rigid,
                 verlet,
             };
-            sweep(substep, motion, scratch);
+            sweep(substep, motion, &mut scratch.lambda);
             motion.sheet.columns * motion.sheet.rows
         }
         Layout::Mesh(fabric) => {
             let viscosity = material.viscosity * seconds_before;
             mesh::exchange(
-                fabric,
-                position,
-                previous_position,
-                lost_displacement,
-                inv_mass,
-                rigid,
-                viscosity,
-                density,
+                fabric, position, previous, lost, inv_mass, rigid, viscosity, density,
             );
             0
         }

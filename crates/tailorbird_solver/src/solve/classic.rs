@@ -3,7 +3,7 @@
 use crate::{
     coefficients::Coefficients,
     kernels::{distance, spring::alpha_tilde},
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     substep::Substep,
     topology::{Topology, constraints::ConstraintFamily},
 };
@@ -28,11 +28,13 @@ pub fn solve(
     };
     let constraints = topology.constraints();
     let Particles {
-        state: State { position, .. },
-        input: Input { inv_mass, .. },
-        scratch: Scratch { lambda, .. },
+        state,
+        input,
+        scratch,
         ..
     } = particles;
+    let inv_mass = &input.inv_mass;
+    let (position, lambda) = (&mut state.position, &mut scratch.lambda);
     if position.is_empty() {
         return;
     }

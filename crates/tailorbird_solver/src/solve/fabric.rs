@@ -8,7 +8,7 @@ use crate::{
         mesh::{self, Mesh},
         packed::{Packed, with_packed},
     },
-    particles::{Input, Particles, Scratch, State},
+    particles::Particles,
     topology::{fabric::Fabric, hinges::HingeConstraints, weave::EdgeFamily},
 };
 
@@ -21,7 +21,7 @@ impl Pass<'_> {
     /// In one order alone, successive passes rotate some waves: a mesh that nobody touches would gain energy. Both orders together are
     /// symmetric, and take energy from all waves.
     pub fn solve_fabric(&self, fabric: &Fabric, particles: &mut Particles) {
-        let passes = fabric.chains().passes.len();
+        let passes = fabric.chains.passes.len();
         self.solve_shear(fabric, particles);
         self.solve_chains(fabric, 0..passes, particles);
         self.solve_shear(fabric, particles);
@@ -30,7 +30,7 @@ impl Pass<'_> {
 
     fn solve_shear(&self, fabric: &Fabric, particles: &mut Particles) {
         let alpha_tilde = TIMES * self.alpha_tilde(self.material.shear_compliance);
-        let springs = fabric.shear();
+        let springs = &fabric.shear;
         let lengths = particles.state.grant.springs(springs);
         with_packed(
             &mut particles.state.position,
@@ -49,29 +49,24 @@ impl Pass<'_> {
     ) {
         let material = self.material;
         let Particles {
-            state:
-                State {
-                    position,
-                    effort,
-                    grant,
-                    ..
-                },
-            input: Input { inv_mass, .. },
-            scratch: Scratch { contacts, .. },
+            state,
+            input,
+            scratch,
             ..
         } = particles;
+        let (grant, contacts) = (&state.grant, &mut scratch.contacts);
         let mesh = Mesh {
             fabric,
-            position: SharedPoints::new(position),
-            inv_mass: Shared::new(inv_mass),
+            position: SharedPoints::new(&mut state.position),
+            inv_mass: Shared::new(&mut input.inv_mass),
             normal: contacts
                 .any
                 .then(|| SharedPoints::new(&mut contacts.normal)),
             pressed: (!contacts.pressed.is_empty()).then(|| Shared::new(&mut contacts.pressed)),
-            rest_length: grant.chains(fabric.chains()),
-            give: self.give(*effort, grant.largest(), contacts.any),
+            rest_length: grant.chains(&fabric.chains),
+            give: self.give(state.effort, grant.largest(), contacts.any),
         };
-        let passes = &fabric.chains().passes;
+        let passes = &fabric.chains.passes;
         for k in order {
             let compliance = match passes[k].family {
                 EdgeFamily::Warp => material.warp_compliance,

@@ -8,11 +8,7 @@ mod slowing;
 mod tangles;
 
 use crate::{
-    cloth::ClothData,
-    coefficients::Method,
-    effort,
-    kernels::verlet::Verlet,
-    particles::{Input, Particles, State},
+    cloth::ClothData, coefficients::Method, effort, kernels::verlet::Verlet, particles::Particles,
     substep::Substep,
 };
 
@@ -36,38 +32,23 @@ pub fn integrate(substep: &Substep, cloth: &mut ClothData) {
         Method::Lines => chains::integrate(substep, topology, material, verlet, particles),
         Method::Springs => 0,
     };
-    let Particles {
-        state:
-            State {
-                position,
-                previous_position,
-                lost_displacement,
-                ..
-            },
-        input:
-            Input {
-                acceleration,
-                inv_mass,
-                held,
-                ..
-            },
-        ..
-    } = particles;
-    if moved < inv_mass.len() {
+    let Particles { state, input, .. } = &mut *particles;
+    if moved < input.inv_mass.len() {
         verlet.step(
             substep.level,
-            position,
-            previous_position,
-            lost_displacement,
-            (!acceleration.is_empty()).then_some(&*acceleration),
-            inv_mass,
-            moved..inv_mass.len(),
+            &mut state.position,
+            &mut state.previous_position,
+            &mut state.lost_displacement,
+            Some(&input.acceleration).filter(|a| !a.is_empty()),
+            &input.inv_mass,
+            moved..input.inv_mass.len(),
         );
     }
-    for (pin, place) in held.pins() {
+    for (pin, place) in input.held.pins() {
         let i = pin.index();
-        let from = position.get(i);
-        position.set(i, from + (place - from) / substep.left() as f32);
+        let from = state.position.get(i);
+        let place = from + (place - from) / substep.left() as f32;
+        state.position.set(i, place);
     }
     particles.move_grabbed(topology, substep.left(), seconds);
     particles.state.substep_seconds = seconds;

@@ -2,11 +2,7 @@
 
 use bevy_math::Vec3;
 
-use crate::{
-    kernels::rigid_motion::RigidMotion,
-    particles::{Input, Particles, Scratch, State},
-    topology::Topology,
-};
+use crate::{kernels::rigid_motion::RigidMotion, particles::Particles, topology::Topology};
 
 /// Extent of a cloth, as a multiple of its size, beyond which it comes back faster [-]: no hand or post draws it out so far.
 const FAR: f32 = 1.5;
@@ -163,18 +159,8 @@ impl Particles {
     pub fn disturb(&mut self, topology: &Topology) {
         const FLAT: f32 = 1e-4;
         const PUSH: f32 = 1e-5;
-        let Particles {
-            state:
-                State {
-                    position,
-                    previous_position,
-                    ..
-                },
-            input: Input { inv_mass, .. },
-            scratch: Scratch { contacts, .. },
-            ..
-        } = self;
-        let flat = topology.flat && position.z.iter().all(|z| z.abs() < FLAT);
+        let (state, contacts) = (&mut self.state, &self.scratch.contacts);
+        let flat = topology.flat && state.position.z.iter().all(|z| z.abs() < FLAT);
         if !flat || !contacts.any {
             return;
         }
@@ -183,11 +169,11 @@ impl Particles {
         if !(0..normal.len()).any(sideways) {
             return;
         }
-        for (i, w) in inv_mass.iter().enumerate() {
+        for (i, w) in self.input.inv_mass.iter().enumerate() {
             if *w > 0.0 {
                 let push = PUSH * crate::numbers::unit_of(i as u32);
-                position.z[i] += push;
-                previous_position.z[i] += push;
+                state.position.z[i] += push;
+                state.previous_position.z[i] += push;
             }
         }
     }

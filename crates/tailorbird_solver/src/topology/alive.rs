@@ -1,6 +1,6 @@
 //! Edges of a sheet that are not torn.
 
-use crate::memory::heap;
+use crate::memory_bytes;
 
 use super::lattice::Lattice;
 
@@ -23,6 +23,8 @@ pub struct AliveEdges {
     /// By family; the bit of an edge is that of its first particle.
     bits: [Vec<u64>; 4],
 }
+
+memory_bytes!(AliveEdges: bits);
 
 impl AliveEdges {
     /// Edges of a sheet of which nothing is torn.
@@ -51,11 +53,6 @@ impl AliveEdges {
         let was = self.is_alive(family, particle);
         self.bits[family as usize][word] &= !bit;
         was
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.bits.iter().map(heap).sum()
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
     coloring::color_in_blocks,
     weave::{EdgeFamily, Weave},
 };
-use crate::memory::heap;
+use crate::memory_bytes;
 
 mod cover;
 mod layout;
@@ -68,6 +68,8 @@ pub struct Chains {
     pub along_warp: Vec<f32>,
 }
 
+memory_bytes!(Chains: passes, batches, particle, rest_length, scale, along_warp);
+
 impl Chains {
     /// Covers the edges along warp and weft with chains, and renumbers the particles so that the particles of the first pass lie one after
     /// the other.
@@ -103,16 +105,6 @@ impl Chains {
             order = (0..rest_positions.len() as u32).collect();
         }
         (chains, order)
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.passes)
-            + heap(&self.batches)
-            + heap(&self.particle)
-            + heap(&self.rest_length)
-            + heap(&self.scale)
-            + heap(&self.along_warp)
     }
 
     /// Ends and rest lengths \[m\] of all edges.

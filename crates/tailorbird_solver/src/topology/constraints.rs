@@ -5,7 +5,7 @@ use std::ops::Range;
 use bevy_math::Vec3;
 
 use super::coloring::color;
-use crate::memory::heap;
+use crate::memory_bytes;
 
 /// Deformation that a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,6 +43,8 @@ pub struct DistanceConstraints {
     pub batches: Vec<Batch>,
 }
 
+memory_bytes!(DistanceConstraints: ends, rest_lengths, batches);
+
 impl DistanceConstraints {
     /// The number of constraints.
     pub fn len(&self) -> usize {
@@ -52,11 +54,6 @@ impl DistanceConstraints {
     /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
-    }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.ends) + heap(&self.rest_lengths) + heap(&self.batches)
     }
 
     /// Ends and rest lengths of one family.

@@ -9,12 +9,13 @@ use super::{
     chains::{Chains, inverse},
     constraints::{ConstraintFamily, DistanceConstraints},
     fabric::Fabric,
+    groups::Groups,
     hinges::HingeConstraints,
     lattice::Lattice,
     layout::{Layout, SheetLayout},
     mesh_edges::MeshEdges,
-    neighbors::NeighborLists,
     order::ParticleOrder,
+    order::Stored,
     recognize::Recognized,
     repair::Repaired,
     weave::Weave,
@@ -72,9 +73,11 @@ pub(super) fn constraints(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Di
 }
 
 /// Neighbours of each particle by an edge or a diagonal.
-pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> NeighborLists {
+pub(super) fn neighbors(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Groups<Stored> {
     let [_, shear, stretch] = springs(triangles, rest_positions);
-    NeighborLists::new(rest_positions.len(), stretch.iter().chain(&shear).copied())
+    let edges = stretch.iter().chain(&shear);
+    let both = edges.flat_map(|&[a, b]| [(a, Stored(b)), (b, Stored(a))]);
+    Groups::new(rest_positions.len(), both)
 }
 
 /// Looks for a grid, else for threads; brings the particles into the order that suits the solver.

@@ -10,7 +10,7 @@ use super::{
     mesh_edges::MeshEdges,
     weave::{EdgeFamily, Weave},
 };
-use crate::memory::heap;
+use crate::memory_bytes;
 
 /// Weight below which an edge has no flow across it: such is the diagonal of a right-angled cell.
 const LEAST_WEIGHT: f32 = 1e-3;
@@ -22,18 +22,23 @@ const MOST_EXCHANGE: f32 = 0.5;
 /// and energy goes with the square of it.
 const DIAGONAL: f32 = 0.25;
 
-/// Constraints of a mesh that is no grid, in storage order.
+/// Constraints of a mesh that is no grid, in storage order. Kernels rely on their indices, so that nobody else writes them.
 #[derive(Clone, Debug, Default)]
 pub struct Fabric {
-    chains: Chains,
+    /// Chains of the edges along the threads.
+    pub(crate) chains: Chains,
     /// Particle of each slot of the chains; the last particle where the chain has ended.
-    particle_or_last: Vec<u32>,
-    /// For each link of a batch, true if its particles lie one after the other.
-    runs: Vec<bool>,
-    shear: Springs,
-    exchanges: Vec<Exchange>,
-    particles: usize,
-    size: f32,
+    pub(crate) particle_or_last: Vec<u32>,
+    /// For each link of a batch ([`LANES`] slots), true if its particles lie one after the other.
+    pub(crate) runs: Vec<bool>,
+    /// Springs of the edges across the threads.
+    pub(crate) shear: Springs,
+    /// Pairs that exchange momentum by viscosity.
+    pub(crate) exchanges: Vec<Exchange>,
+    /// Number of particles; all indices are below.
+    pub(crate) particles: usize,
+    /// Diagonal of the box around the rest shape \[m\].
+    pub(crate) size: f32,
 }
 
 /// Springs in batches that share no particle.
@@ -61,6 +66,9 @@ pub struct Exchange {
     /// Largest product of viscosity and time \[m²\].
     pub limit: f32,
 }
+
+memory_bytes!(Fabric: chains, particle_or_last, runs, shear, exchanges);
+memory_bytes!(Springs: ends, rest_length, scale, along_warp, batches);
 
 impl Fabric {
     /// Fabric of a mesh whose particles, `chains` and `weave` are in storage order.
@@ -100,61 +108,9 @@ impl Fabric {
         }
         fabric
     }
-
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        self.chains.memory_bytes()
-            + heap(&self.particle_or_last)
-            + heap(&self.runs)
-            + self.shear.memory_bytes()
-            + heap(&self.exchanges)
-    }
-
-    /// Chains of the edges along the threads.
-    pub fn chains(&self) -> &Chains {
-        &self.chains
-    }
-
-    /// Particle of each slot of the chains; the last particle where the chain has ended.
-    pub fn particle_or_last(&self) -> &[u32] {
-        &self.particle_or_last
-    }
-
-    /// For each link of a batch ([`LANES`] slots), true if its particles lie one after the other.
-    pub fn runs(&self) -> &[bool] {
-        &self.runs
-    }
-
-    /// Springs of the edges across the threads.
-    pub fn shear(&self) -> &Springs {
-        &self.shear
-    }
-
-    /// Pairs that exchange momentum by viscosity.
-    pub fn exchanges(&self) -> &[Exchange] {
-        &self.exchanges
-    }
-
-    /// Number of particles; all indices are below.
-    pub fn particles(&self) -> usize {
-        self.particles
-    }
-
-    /// Diagonal of the box around the rest shape \[m\].
-    pub fn size(&self) -> f32 {
-        self.size
-    }
 }
 
 impl Springs {
-    fn memory_bytes(&self) -> usize {
-        heap(&self.ends)
-            + heap(&self.rest_length)
-            + heap(&self.scale)
-            + heap(&self.along_warp)
-            + heap(&self.batches)
-    }
-
     fn new(rest_positions: &[Vec3], weave: &Weave) -> Self {
         let edges: Vec<usize> = (0..weave.ends.len())
             .filter(|edge| weave.family[*edge] == EdgeFamily::Shear)

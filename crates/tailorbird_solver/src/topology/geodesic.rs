@@ -32,6 +32,8 @@ use bevy_math::Vec3;
 
 use front::Front;
 
+use super::groups::Groups;
+
 /// Index of no half-edge and of no particle.
 const NONE: u32 = u32::MAX;
 /// Height over the edge below which a triangle is a line \[-\].
@@ -55,9 +57,8 @@ pub struct Geodesics {
     apexes: Vec<[f32; 2]>,
     /// Unit normal of each triangle; zero for one without area.
     normals: Vec<Vec3>,
-    /// Start of the half-edges of each particle in `around`; one more than there are particles.
-    offsets: Vec<u32>,
-    around: Vec<u32>,
+    /// Half-edges at the corners of each particle.
+    around: Groups,
     /// Particles at which the shortest path can bend.
     bends: Vec<bool>,
 }
@@ -77,29 +78,15 @@ impl Geodesics {
             .copied()
             .collect();
 
-        let mut offsets = vec![0u32; particles + 1];
-        for &i in &corners {
-            offsets[i as usize + 1] += 1;
-        }
-        for i in 0..particles {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut next = offsets.clone();
-        let mut around = vec![0; corners.len()];
-        for (half, &i) in corners.iter().enumerate() {
-            around[next[i as usize] as usize] = half as u32;
-            next[i as usize] += 1;
-        }
-
+        let halves = (0..).zip(&corners).map(|(half, &i)| (i, half));
         let mut mesh = Self {
             positions: rest_positions.to_vec(),
             normals: Vec::with_capacity(corners.len() / 3),
             across: Vec::with_capacity(corners.len()),
             apexes: Vec::with_capacity(corners.len()),
             bends: Vec::with_capacity(particles),
+            around: Groups::new(particles, halves),
             corners,
-            offsets,
-            around,
         };
         for half in 0..mesh.corners.len() as u32 {
             let [g, p, q] = mesh.corners_from(half).map(|i| mesh.at(i));
@@ -139,8 +126,7 @@ impl Geodesics {
     }
 
     fn around(&self, particle: u32) -> &[u32] {
-        let i = particle as usize;
-        &self.around[self.offsets[i] as usize..self.offsets[i + 1] as usize]
+        self.around.of(particle)
     }
 
     /// The particle at the corner of a half-edge, and the two at the ends of its edge.

@@ -32,8 +32,11 @@ use std::ops::Range;
 
 use bevy_math::{DVec3, Vec3};
 
-use super::{coloring::color_in_blocks, mesh_edges::MOST_SIDES};
-use crate::memory::heap;
+use super::{
+    coloring::color_in_blocks,
+    mesh_edges::{MOST_SIDES, MeshEdges},
+};
+use crate::memory_bytes;
 
 /// Ratio of a triangle's area to the square of its longest edge below which it has no hinges.
 const DEGENERATE: f64 = 1e-6;
@@ -72,6 +75,8 @@ struct Hinge {
     area: f32,
     rest_length: f32,
 }
+
+memory_bytes!(HingeConstraints: particles, coefficients, areas, rest_lengths, batches);
 
 impl HingeConstraints {
     /// Hinges of a mesh: one for each edge of two triangles that are not degenerate. At an edge of up to eight triangles the two that lie
@@ -119,15 +124,6 @@ impl HingeConstraints {
         self.particles.len()
     }
 
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.particles)
-            + heap(&self.coefficients)
-            + heap(&self.areas)
-            + heap(&self.rest_lengths)
-            + heap(&self.batches)
-    }
-
     /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.particles.is_empty()
@@ -136,22 +132,19 @@ impl HingeConstraints {
 
 /// Ends and opposite corners of the pairs of triangles at an edge, in the order of the edges.
 fn pairs_of_triangles(triangles: &[[u32; 3]], rest_positions: &[Vec3]) -> Vec<[u32; 4]> {
-    let mut sides: Vec<([u32; 2], usize, u32)> = triangles
-        .iter()
-        .enumerate()
-        .flat_map(|(number, &[a, b, c])| {
-            [(a, b, c), (b, c, a), (c, a, b)]
-                .map(|(from, to, opposite)| ([from.min(to), from.max(to)], number, opposite))
-        })
-        .collect();
-    sides.sort_unstable();
-    let mut pairs = Vec::with_capacity(sides.len() / 2);
-    for sides in sides.chunk_by(|a, b| a.0 == b.0) {
-        let [a, b] = sides[0].0;
-        match sides {
-            &[(_, _, c), (_, _, d)] if c != d && a != b => pairs.push([a, b, c, d]),
-            _ if (3..=MOST_SIDES).contains(&sides.len()) => {
-                let opposite = sides.iter().map(|side| side.2).collect();
+    let edges = MeshEdges::new(rest_positions.len(), triangles);
+    let opposite = |side: u32| triangles[side as usize / 3][(side as usize + 2) % 3];
+    let mut pairs = Vec::with_capacity(edges.len());
+    for (edge, &[a, b]) in (0..).zip(&edges.ends) {
+        match edges.sides(edge) {
+            &[c, d] => {
+                let [c, d] = [c, d].map(opposite);
+                if c != d && a != b {
+                    pairs.push([a, b, c, d]);
+                }
+            }
+            sides if (3..=MOST_SIDES).contains(&sides.len()) => {
+                let opposite = sides.iter().map(|side| opposite(*side)).collect();
                 pairs.extend(flattest_pairs([a, b], opposite, rest_positions));
             }
             _ => {}

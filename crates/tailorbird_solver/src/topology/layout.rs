@@ -5,6 +5,7 @@ use super::{
     fabric::Fabric,
     lattice::Lattice,
 };
+use crate::memory::Memory;
 
 /// Layout of the particles of a cloth, and the constraints between them.
 #[derive(Clone, Debug)]
@@ -41,9 +42,8 @@ impl Default for Layout {
     }
 }
 
-impl Layout {
-    /// Heap memory in use \[byte\].
-    pub fn memory_bytes(&self) -> usize {
+impl Memory for Layout {
+    fn memory_bytes(&self) -> usize {
         match self {
             Self::Sheet(sheet) => sheet.alive.as_ref().map_or(0, AliveEdges::memory_bytes),
             Self::Mesh(fabric) => fabric.memory_bytes(),

@@ -1,5 +1,7 @@
 //! The edges of a triangle mesh and the triangles on their sides.
 
+use super::groups::Groups;
+
 /// Number of triangles at one edge above which they do not count as adjacent.
 pub(super) const MOST_SIDES: usize = 8;
 
@@ -21,35 +23,23 @@ pub struct MeshEdges {
 impl MeshEdges {
     /// Edges of triangles whose corners are all below `particles`. Linear time where no particle has very many.
     pub fn new(particles: usize, triangles: &[[u32; 3]]) -> Self {
-        let directed = |side: usize| {
+        let count = triangles.len() * 3;
+        let directed = (0..count).map(|side| {
             let triangle = &triangles[side / 3];
             let (from, to) = (triangle[side % 3], triangle[(side + 1) % 3]);
-            [from.min(to), from.max(to)]
-        };
-        let count = triangles.len() * 3;
-        let mut next = vec![0u32; particles + 1];
-        for side in 0..count {
-            next[directed(side)[0] as usize + 1] += 1;
-        }
-        for i in 0..particles {
-            next[i + 1] += next[i];
-        }
-        let starts = next.clone();
-        let mut buckets = vec![(0u32, 0u32); count];
-        for side in 0..count {
-            let [low, high] = directed(side);
-            buckets[next[low as usize] as usize] = (high, side as u32);
-            next[low as usize] += 1;
-        }
-
+            (from.min(to), (from.max(to), side as u32))
+        });
+        let buckets = Groups::new(particles, directed);
         let mut edges = Self {
             edge_of_side: vec![0; count],
             sides: Vec::with_capacity(count),
             offsets: Vec::with_capacity(count / 2 + 1),
             ends: Vec::with_capacity(count / 2),
         };
-        for low in 0..particles {
-            let bucket = &mut buckets[starts[low] as usize..starts[low + 1] as usize];
+        let mut bucket: Vec<(u32, u32)> = Vec::new();
+        for low in 0..particles as u32 {
+            bucket.clear();
+            bucket.extend(buckets.of(low));
             bucket.sort_unstable();
             for sides in bucket.chunk_by(|a, b| a.0 == b.0) {
                 edges.offsets.push(edges.sides.len() as u32);
@@ -57,7 +47,7 @@ impl MeshEdges {
                     edges.edge_of_side[side as usize] = edges.ends.len() as u32;
                     edges.sides.push(side);
                 }
-                edges.ends.push([low as u32, sides[0].0]);
+                edges.ends.push([low, sides[0].0]);
             }
         }
         edges.offsets.push(count as u32);

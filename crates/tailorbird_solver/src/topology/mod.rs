@@ -9,6 +9,7 @@ pub mod edges;
 pub mod fabric;
 pub mod geodesic;
 pub mod grid;
+mod groups;
 pub mod hinges;
 pub mod lattice;
 pub mod layout;
@@ -32,15 +33,16 @@ use bevy_math::{UVec2, Vec3};
 
 use crate::{
     error::ClothShapeError,
-    memory::heap,
+    memory_bytes,
     shape::{ClothShape, check_positions},
 };
 use constraints::DistanceConstraints;
 use fabric::Fabric;
+use groups::Groups;
 use hinges::HingeConstraints;
 use lattice::Lattice;
 use layout::Layout;
-use neighbors::{NeighborLists, Neighbors};
+use neighbors::Neighbors;
 use order::{ParticleOrder, Stored};
 use repair::TriangleCopy;
 use report::ClothMeshReport;
@@ -85,12 +87,17 @@ pub struct Topology {
     /// Made when they are asked for.
     constraints: OnceLock<DistanceConstraints>,
     /// Made when they are asked for; never for a lattice.
-    neighbors: OnceLock<NeighborLists>,
+    neighbors: OnceLock<Groups<Stored>>,
     /// Errors of the parts that were left out.
     pub dropped: Vec<ClothShapeError>,
     /// Findings in a mesh; empty for a grid.
     pub report: ClothMeshReport,
 }
+
+memory_bytes!(
+    Topology: order, rest_positions, layout, hinges, triangles, source_triangles, turned, copies, particle_of_vertex, triangle_areas,
+    areas, origins, constraints, neighbors, dropped, report.islands
+);
 
 impl Topology {
     /// Builds the topology of a shape that is scaled by `scale`.
@@ -256,30 +263,12 @@ impl Topology {
         let lists = self
             .neighbors
             .get_or_init(|| edges::neighbors(&self.triangles, &self.rest_positions));
-        Neighbors::Listed(lists.of(particle))
+        Neighbors::Listed(lists.of(particle.0))
     }
 
-    /// Memory on the heap by now \[byte\].
-    pub fn memory_bytes(&self) -> usize {
-        heap(&self.rest_positions)
-            + heap(&self.triangles)
-            + heap(&self.source_triangles)
-            + heap(&self.particle_of_vertex)
-            + heap(&self.triangle_areas)
-            + heap(&self.areas)
-            + heap(&self.origins)
-            + self.layout.memory_bytes()
-            + heap(&self.dropped)
-            + heap(&self.turned)
-            + heap(&self.copies)
-            + heap(&self.report.islands)
-            + self.order.memory_bytes()
-            + self.hinges.memory_bytes()
-            + self
-                .constraints
-                .get()
-                .map_or(0, DistanceConstraints::memory_bytes)
-            + self.neighbors.get().map_or(0, NeighborLists::memory_bytes)
+    /// For each particle the piece that it belongs to: the lowest particle that triangles join it to.
+    pub fn pieces(&self) -> Vec<u32> {
+        pieces::pieces(self.particles(), self.triangles().iter())
     }
 
     /// The ends and rest lengths \[m\] of the edges that hardly stretch: those along the threads.
@@ -290,7 +279,7 @@ impl Topology {
         };
         match &self.layout {
             Layout::Sheet(sheet) => sheet.edges().map(measured).collect(),
-            Layout::Mesh(fabric) => fabric.chains().edges().collect(),
+            Layout::Mesh(fabric) => fabric.chains.edges().collect(),
         }
     }
 

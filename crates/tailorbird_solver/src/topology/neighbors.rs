@@ -3,7 +3,6 @@
 use std::ops::Deref;
 
 use super::{alive::Family, layout::SheetLayout, order::Stored};
-use crate::memory::heap;
 
 /// Particles that are joined to a particle by an edge or a diagonal.
 #[derive(Clone, Copy, Debug)]
@@ -55,52 +54,6 @@ impl Neighbors<'_> {
             }
         }
         Self::Around(particles, count)
-    }
-}
-
-/// For each particle of a mesh the particles at the other ends of its edges.
-#[derive(Clone, Debug, Default)]
-pub(super) struct NeighborLists {
-    /// Start of the list of each particle in `particles`; one more than there are particles.
-    offsets: Vec<u32>,
-    particles: Vec<Stored>,
-}
-
-impl NeighborLists {
-    pub(super) fn new(particles: usize, edges: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
-        let mut offsets = vec![0u32; particles + 1];
-        for [a, b] in edges.clone() {
-            offsets[a as usize + 1] += 1;
-            offsets[b as usize + 1] += 1;
-        }
-        for i in 0..particles {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut next = offsets.clone();
-        let mut list = vec![Stored(0); offsets[particles] as usize];
-        for [a, b] in edges {
-            for (from, to) in [(a, b), (b, a)] {
-                list[next[from as usize] as usize] = Stored(to);
-                next[from as usize] += 1;
-            }
-        }
-        Self {
-            offsets,
-            particles: list,
-        }
-    }
-
-    /// Neighbours of one particle; none where the particle is out of range.
-    pub(super) fn of(&self, particle: Stored) -> &[Stored] {
-        let i = particle.index();
-        match (self.offsets.get(i), self.offsets.get(i + 1)) {
-            (Some(&start), Some(&end)) => &self.particles[start as usize..end as usize],
-            _ => &[],
-        }
-    }
-
-    pub(super) fn memory_bytes(&self) -> usize {
-        heap(&self.offsets) + heap(&self.particles)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::memory::heap;
 pub struct Given(pub u32);
 
 /// Number of a particle in storage order: its place in arrays of particles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Stored(pub u32);
 

@@ -7,6 +7,7 @@ use bevy_math::{Vec2, Vec3};
 use super::{
     mesh_edges::MeshEdges,
     orientation::Orientation,
+    pieces::pieces,
     report::{ClothMeshReport, Island},
     weld::weld,
 };
@@ -279,26 +280,11 @@ impl Repaired {
         (self.source_triangles[first as usize], a.midpoint(b))
     }
 
-    /// Joins the particles of each triangle (union–find with path halving).
     fn find_islands(&mut self) {
-        let mut parent: Vec<u32> = (0..self.positions.len() as u32).collect();
-        fn root(parent: &mut [u32], mut i: u32) -> u32 {
-            while parent[i as usize] != i {
-                parent[i as usize] = parent[parent[i as usize] as usize];
-                i = parent[i as usize];
-            }
-            i
-        }
-        for &[a, b, c] in &self.triangles {
-            let [a, b, c] = [a, b, c].map(|i| root(&mut parent, i));
-            let least = a.min(b).min(c);
-            for i in [a, b, c] {
-                parent[i as usize] = least;
-            }
-        }
-        let mut island_of_root = vec![u32::MAX; parent.len()];
+        let pieces = pieces(self.positions.len(), self.triangles.iter().copied());
+        let mut island_of_piece = vec![u32::MAX; pieces.len()];
         for (t, &triangle) in self.triangles.iter().enumerate() {
-            let island = &mut island_of_root[root(&mut parent, triangle[0]) as usize];
+            let island = &mut island_of_piece[pieces[triangle[0] as usize] as usize];
             if *island == u32::MAX {
                 *island = self.report.islands.len() as u32;
                 self.report.islands.push(Island {

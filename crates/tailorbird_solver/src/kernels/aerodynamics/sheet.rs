@@ -37,16 +37,11 @@ impl AirSheet<'_> {
     fn check(&self) -> [usize; 2] {
         let size = [self.lattice.columns, self.lattice.rows].map(|n| n as usize);
         let n = size[0] * size[1];
-        let acceleration = [
-            self.acceleration.x,
-            self.acceleration.y,
-            self.acceleration.z,
-        ];
         assert!(
             self.position.has(n)
                 && self.previous.has(n)
                 && self.inv_mass.len() >= n
-                && acceleration.iter().all(|values| values.len() >= n),
+                && self.acceleration.has(n),
             "a sheet of {} x {} particles",
             size[0],
             size[1]

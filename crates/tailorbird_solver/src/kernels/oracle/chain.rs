@@ -43,7 +43,7 @@ struct Case<'a> {
 impl Case<'_> {
     /// The chains of a batch.
     fn chains(&self, batch: usize) -> Vec<Chain> {
-        let all = self.topology.fabric().expect("no grid").chains();
+        let all = &self.topology.fabric().expect("no grid").chains;
         let batch = &all.batches[batch];
         let of_lane = |lane: usize| {
             let slots = batch.slots.clone().skip(lane).step_by(LANES);
@@ -82,7 +82,7 @@ impl Case<'_> {
             inv_mass: Shared::new(&mut inv_mass),
             normal: normal.as_mut().map(SharedPoints::new),
             pressed: None,
-            rest_length: &fabric.chains().rest_length,
+            rest_length: &fabric.chains.rest_length,
             give: self.give,
         };
         solve_chains(Level::new(), mesh, self.stretch, batch..batch + 1);
@@ -210,7 +210,7 @@ fn compare(case: &Case) -> Result<[usize; 2], TestCaseError> {
         .topology
         .fabric()
         .expect("no grid")
-        .chains()
+        .chains
         .batches
         .len();
     for batch in 0..batches {
@@ -247,7 +247,7 @@ proptest! {
         let case = Case {
             position, inv_mass: vec![1.0; 184], normal: Some(normals.clone()), stretch: 0.0, give: Give::default(), topology: &topology,
         };
-        for batch in 0..topology.fabric().expect("no grid").chains().batches.len() {
+        for batch in 0..topology.fabric().expect("no grid").chains.batches.len() {
             for (i, is) in case.solved(batch).into_iter().enumerate() {
                 let moved = is - case.position[i].as_dvec3();
                 prop_assert!(moved.dot(normals[i].as_dvec3()).abs() < 1e-4, "{i}: {moved}");

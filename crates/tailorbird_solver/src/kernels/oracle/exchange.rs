@@ -22,10 +22,10 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
         Vec3::new(axis(0), axis(1), axis(2))
     };
     let limits = fabric
-        .exchanges()
+        .exchanges
         .iter()
         .map(|exchange| f64::from(exchange.limit));
-    let middle = limits.sum::<f64>() / fabric.exchanges().len() as f64;
+    let middle = limits.sum::<f64>() / fabric.exchanges.len() as f64;
     // So far away that x⁻ is rounded to 6 · 10⁻⁵, and velocities are not.
     let far = Vec3::splat(1000.0);
     // Viscosities at which none, some and all of the edges are at their limit.
@@ -64,7 +64,7 @@ fn neighbours_of_a_mesh_exchange_momentum_as_stated() {
                 x - start.get(i).as_dvec3() - (rigid.displacement.as_dvec3() + turned)
             };
             let mut gained = vec![DVec3::ZERO; n];
-            for exchange in fabric.exchanges() {
+            for exchange in &fabric.exchanges {
                 let [a, b] = exchange.ends.map(|i| i as usize);
                 let c = 0.2 * f64::from(exchange.weight) * f64::from(viscosity.min(exchange.limit));
                 let flow = c * (velocity(b) - velocity(a));

@@ -139,7 +139,8 @@ proptest! {
         let rotation = Quat::from_scaled_axis(turn);
         let (mut position, mut previous) = (points(&[place]), points(&[before]));
         let w = if held { 0.0 } else { 2.0 };
-        rigid::change_frame(Mat3::from_quat(rotation), shift, &[w], &mut position, &mut previous);
+        let places = [&mut position, &mut previous];
+            rigid::change_frame(Mat3::from_quat(rotation), shift, &[w], places);
         // Rodrigues' formula.
         let (axis, angle) = (turn.as_dvec3().normalize_or_zero(), turn.as_dvec3().length());
         let moved = |x: Vec3| {

@@ -202,7 +202,7 @@ fn chains_of(cloth: ClothShape, has_rings: bool) {
     let topology = Topology::build(&cloth, Vec3::ONE).expect("a mesh");
     let fabric = topology.fabric().expect("no grid");
     let closed = |batch: &ChainBatch| batch.closing.is_some();
-    assert_eq!(fabric.chains().batches.iter().any(closed), has_rings);
+    assert_eq!(fabric.chains.batches.iter().any(closed), has_rings);
     let rest = topology.rest_positions.iter().map(|p| *p * 20.0);
     let start = State::new([topology.particles(), 1], rest);
     for (contact, bodies) in [(false, false), (true, false), (true, true)] {
@@ -213,10 +213,10 @@ fn chains_of(cloth: ClothShape, has_rings: bool) {
                 inv_mass: Shared::new(&mut state.inv_mass),
                 normal: contact.then(|| SharedPoints::new(&mut state.normal)),
                 pressed: bodies.then(|| Shared::new(&mut state.pressed)),
-                rest_length: &fabric.chains().rest_length,
+                rest_length: &fabric.chains.rest_length,
                 give: super::give(contact),
             };
-            for pass in &fabric.chains().passes {
+            for pass in &fabric.chains.passes {
                 mesh::solve_chains(level, mesh, 0.01, pass.batches.clone());
             }
         });

@@ -207,10 +207,12 @@ fn colliders() {
 
 #[test]
 fn bounds() {
-    let points = State::sheet([17, 33]).position;
+    let State {
+        position, previous, ..
+    } = State::sheet([17, 33]);
     let all = levels().into_iter();
     let all: Vec<_> = all
-        .map(|level| range::range(level, &points.x, (0.0, 0.0)))
+        .map(|level| range::bounds(level, [&position, &previous], 0..position.len()))
         .collect();
     assert!(all.iter().all(|one| *one == all[0]));
 }

@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 
-use super::{EdgeFamily, Leaning, Weave};
+use super::{super::groups::Groups, EdgeFamily, Leaning, Weave};
 
 /// Cosine of four times the largest angle to a thread at which an edge can stand in for it: 40°.
 const NEAR: f32 = -0.94;
@@ -22,21 +22,9 @@ pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[V
     // Rounded, so that among equals the order of the mesh decides.
     gaps.sort_by_key(|e| (-1e3 * leanings[*e].alignment) as i32);
 
-    let mut starts = vec![0usize; rest_positions.len() + 1];
-    for &i in weave.ends.iter().flatten() {
-        starts[i as usize + 1] += 1;
-    }
-    for i in 0..rest_positions.len() {
-        starts[i + 1] += starts[i];
-    }
-    let mut next = starts.clone();
-    let mut edges = vec![0usize; weave.ends.len() * 2];
-    for (e, ends) in weave.ends.iter().enumerate() {
-        for &i in ends {
-            edges[next[i as usize]] = e;
-            next[i as usize] += 1;
-        }
-    }
+    let ends = weave.ends.iter().enumerate();
+    let ends = ends.flat_map(|(e, ends)| ends.map(|i| (i, e)));
+    let edges = Groups::new(rest_positions.len(), ends);
     let along = |weave: &Weave, edge: usize, from: u32| {
         let [a, b] = weave.ends[edge].map(|i| rest_positions[i as usize]);
         let along = (b - a).normalize_or_zero();
@@ -50,8 +38,8 @@ pub(super) fn close(weave: &mut Weave, leanings: &[Leaning], rest_positions: &[V
         let family = leanings[gap].family;
         let ends_at = |i: u32| {
             let direction = along(weave, gap, i);
-            edges[starts[i as usize]..starts[i as usize + 1]]
-                .iter()
+            let edges = edges.of(i).iter();
+            edges
                 .filter(|e| weave.family[**e] == family)
                 .all(|e| along(weave, *e, i).dot(direction) < SAME_DIRECTION)
         };
