@@ -55,7 +55,7 @@ fn hold_or_let_go(
     }
 }
 
-/// How far a bone swings, and how late [rad].
+/// Amplitude of a bone's swing, and its delay [rad].
 #[derive(Component)]
 #[require(Visibility)]
 struct Bone(f32, f32);

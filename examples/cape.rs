@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use bevy::{app::RunFixedMainLoopSystems::AfterFixedMainLoop, prelude::*};
 use tailorbird::prelude::*;
 
-/// What moves: the whole figure, or what swings about a joint at a place [m] by a scaled axis [rad].
+/// A moving part: the whole figure, or what swings about a joint at a place [m] by a scaled axis [rad].
 #[derive(Component, Clone, Copy)]
 #[require(Transform, Visibility)]
 enum Joint {
@@ -103,12 +103,12 @@ fn walk(time: Res<Time>, step: Res<Time<Fixed>>, mut joints: Query<(&Joint, &mut
     let late = f32::from(is_frame) * step.timestep().as_secs_f32();
     let t = (time.elapsed_secs() - late).max(0.0);
     // For 3.2 s on its way, with a hop; then half a turn. It looks along its z axis.
-    let (way, t) = ((t / 4.0).floor(), t % 4.0);
+    let (walk_number, t) = ((t / 4.0).floor(), t % 4.0);
     let ease = |part: f32| 0.5 - 0.5 * (PI * part.clamp(0.0, 1.0)).cos();
-    let x = 2.4 * (ease(t / 3.2) - 0.5) * (PI * way).cos();
+    let x = 2.4 * (ease(t / 3.2) - 0.5) * (PI * walk_number).cos();
     let hop = ((t - 1.3) / 0.55).clamp(0.0, 1.0);
     let place = Vec3::new(x, 1.3 * hop * (1.0 - hop), 0.0);
-    let turn = Quat::from_rotation_y(FRAC_PI_2 + PI * (way + ease((t - 3.2) / 0.8)));
+    let turn = Quat::from_rotation_y(FRAC_PI_2 + PI * (walk_number + ease((t - 3.2) / 0.8)));
     let stride = (PI * t / 3.2).sin().max(0.0) * (TAU * 1.25 * t).sin();
     for (joint, mut transform) in &mut joints {
         let (at, rotation) = match *joint {

@@ -33,7 +33,7 @@ struct ClothTorus {
 }
 
 impl ClothTorus {
-    /// Where a point of the world is with respect to the torus in its place, in a substep of this length \[s\].
+    /// Contact of a point of the world with the torus in its place, in a substep of this length \[s\].
     fn contact(self, place: &Transform, seconds: f32, point: Vec3) -> Option<SubstepContact> {
         let p = point - place.translation;
         let ring = self.ring * p.with_y(0.0).try_normalize()?;

@@ -1,4 +1,4 @@
-//! What cloth costs in a whole frame: simulation, mesh, extraction, rendering.
+//! Cost of cloth in a whole frame: simulation, mesh, extraction, rendering.
 //!
 //! Frames are drawn to a small image, without a window. Each scene is measured with its meshes not written at all, written as assets,
 //! and written to where the renderer keeps them, in turns.
@@ -60,7 +60,7 @@ fn scene(text: &str) -> Result<[u32; 2], String> {
     numbers.ok_or_else(|| "0 to 10000 cloths of 2 to 1024 particles a side, such as 100x32".into())
 }
 
-/// What is done with the meshes.
+/// Treatment of the meshes.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Meshes {
@@ -107,9 +107,9 @@ struct Record {
     total: f64,
     /// The part of it that is not simulation.
     outside_solver: f64,
-    /// What the meshes add to a frame in which they are not written [ms].
+    /// Time that the meshes add to a frame in which they are not written [ms].
     added: f64,
-    /// Which part that is of it and the simulation: of what the cloth costs, an empty frame of Bevy left out. None without cloth.
+    /// Ratio of that to the sum of it and the simulation: a part of what the cloth costs, an empty frame of Bevy left out. None without cloth.
     outside_solver_of_cloth: Option<f64>,
 }
 
@@ -257,26 +257,26 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 fn measure(scene: [u32; 2], away: bool, frames: u32) -> Vec<Record> {
-    const WAYS: [Meshes; 3] = [Meshes::Nothing, Meshes::Asset, Meshes::Slab];
+    const TREATMENTS: [Meshes; 3] = [Meshes::Nothing, Meshes::Asset, Meshes::Slab];
     let mut app = app(scene, away);
     for _ in 0..20 {
         frame(&mut app);
     }
-    let mut found = WAYS.map(|_| Vec::new());
+    let mut found = TREATMENTS.map(|_| Vec::new());
     for k in 0..3 * frames.div_ceil(3) {
         // In turns of a few frames, of which the first are not counted: others use this machine as well.
-        let way = k as usize % WAYS.len();
-        app.insert_resource(WAYS[way]);
-        app.world_mut().resource_mut::<ClothMeshSettings>().write = match WAYS[way] {
+        let treatment = k as usize % TREATMENTS.len();
+        app.insert_resource(TREATMENTS[treatment]);
+        app.world_mut().resource_mut::<ClothMeshSettings>().write = match TREATMENTS[treatment] {
             Meshes::Asset => ClothMeshWrite::Asset,
             _ => ClothMeshWrite::Slab,
         };
         for _ in 0..3 {
             frame(&mut app);
         }
-        found[way].extend((0..3).map(|_| frame(&mut app)));
+        found[treatment].extend((0..3).map(|_| frame(&mut app)));
     }
-    let records = WAYS.into_iter().zip(found).map(|(writes, frames)| {
+    let records = TREATMENTS.into_iter().zip(found).map(|(writes, frames)| {
         let part = |of: fn(&Frame) -> f64| median(frames.iter().map(of).collect());
         let total = part(Frame::total);
         Record {

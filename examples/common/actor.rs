@@ -64,7 +64,7 @@ impl Actor {
         }
     }
 
-    /// Whether the pointer touches something within `seconds` from `time`, so that the camera has to look.
+    /// Returns whether the pointer touches something within `seconds` from `time`, so that the camera has to look.
     pub fn touches(&self, time: f32, seconds: f32) -> bool {
         let soon = self.script.cues[self.next..]
             .iter()
@@ -216,7 +216,7 @@ fn send_wheel(world: &mut World, notches: f32) {
     });
 }
 
-/// Where a point of the cloth is in the picture [pixels].
+/// Place of a point of the cloth in the picture [pixels].
 fn cloth_on_screen(world: &mut World, place: Vec2) -> Option<Vec2> {
     type Cloths = Query<
         'static,

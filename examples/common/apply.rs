@@ -27,9 +27,9 @@ use super::{
 /// The demo without window and panel: stage, scenes, settings, keys. Add it after Bevy's plugins and `ClothPlugins`.
 #[derive(Default)]
 pub struct DemoPlugin {
-    /// What is shown at first.
+    /// Settings at the start.
     pub settings: DemoSettings,
-    /// Where it is shown.
+    /// Stage of the scenes.
     pub stage: StagePlugin,
 }
 

@@ -1,4 +1,4 @@
-//! What a player asks for that is no setting: save, load, a picture, the panel. Keys and buttons ask alike.
+//! Requests of a player that are no settings: save, load, a picture, the panel. Keys and buttons ask alike.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub enum Ask {
     Panel,
 }
 
-/// Where settings are saved to and loaded from.
+/// File that settings are saved to and loaded from.
 #[derive(Resource, Clone, Debug)]
 pub struct SettingsPath(pub PathBuf);
 
@@ -33,7 +33,7 @@ impl Default for SettingsPath {
     }
 }
 
-/// Whether the panel is shown.
+/// Visibility of the panel.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelShown(pub bool);
 

@@ -27,10 +27,10 @@ impl Plugin for OrbitCameraPlugin {
     }
 }
 
-/// Where a camera is, around the point that it looks at.
+/// Place of a camera, around the point that it looks at.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct OrbitCamera {
-    /// What it looks at [m].
+    /// Point that it looks at [m].
     pub focus: Vec3,
     /// To the right, seen from above [rad].
     pub yaw: f32,
@@ -49,9 +49,9 @@ pub struct OrbitCamera {
 pub struct Followed;
 
 impl OrbitCamera {
-    /// How far up and down it goes [rad].
+    /// Largest angle up and down [rad].
     const STEEPEST: f32 = FRAC_PI_2 - 0.05;
-    /// Turn per pixel of the mouse's way [rad].
+    /// Turn per pixel of the mouse's displacement [rad].
     const TURN: f32 = 0.006;
 
     /// Looks at `focus` [m] from `distance` [m]; yaw and pitch in degrees.
@@ -82,7 +82,7 @@ impl OrbitCamera {
         Quat::from_euler(EulerRot::YXZ, self.yaw, -self.pitch, 0.0)
     }
 
-    /// Where the camera is, for the width [m] of what it sees at a distance of 1 m.
+    /// Transform of the camera, for the width [m] of what it sees at a distance of 1 m.
     fn transform(&self, width: f32) -> Transform {
         let rotation = self.rotation();
         let aside = 0.5 * self.covered * width * self.distance;
@@ -92,7 +92,7 @@ impl OrbitCamera {
     }
 }
 
-/// Which way of moving the camera began, and lasts while its button is down.
+/// Motion of the camera that began, and lasts while its button is down.
 #[derive(Default)]
 enum Hold {
     #[default]
@@ -125,18 +125,18 @@ fn turn_by_mouse(
         if zooms && notches != 0.0 {
             camera.zoom(notches);
         }
-        let way = motion.delta;
-        if way == Vec2::ZERO {
+        let drag = motion.delta;
+        if drag == Vec2::ZERO {
             continue;
         }
         match *hold {
             Hold::None => {}
             Hold::Turn => {
-                let turn = -way * OrbitCamera::TURN;
+                let turn = -drag * OrbitCamera::TURN;
                 camera.turn(turn.x, -turn.y);
             }
             Hold::Move => {
-                let step = Vec3::new(-way.x, way.y, 0.0) * 0.001 * camera.distance;
+                let step = Vec3::new(-drag.x, drag.y, 0.0) * 0.001 * camera.distance;
                 let step = camera.rotation() * step;
                 camera.focus += step;
             }

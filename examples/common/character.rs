@@ -24,7 +24,7 @@ const JUMP: f32 = 0.4;
 /// From teleport to teleport [s].
 const TELEPORTS: f32 = 8.0;
 
-/// What a cape feels of its wearer: most of the way, less of the turns, nothing of being put elsewhere.
+/// Motion of its wearer that a cape feels: most of the displacement, less of the turns, nothing of being put elsewhere.
 pub fn inertia() -> ClothInertia {
     ClothInertia {
         linear: 0.7,
@@ -34,7 +34,7 @@ pub fn inertia() -> ClothInertia {
     }
 }
 
-/// How a cape is turned at rest: it lies in the air behind its wearer, not in the chest.
+/// Turn of a cape at rest: it lies in the air behind its wearer, not in the chest.
 pub fn behind() -> Quat {
     Quat::from_rotation_x(1.2)
 }
@@ -150,13 +150,13 @@ pub fn spawn(commands: &mut Commands, assets: &mut SceneAssets) -> Entity {
     chest
 }
 
-/// How much of a run it is already: it starts standing.
+/// Part of a run that it is already, 0 to 1: it starts standing.
 fn pace(t: f32) -> f32 {
     (t - 0.5).clamp(0.0, 1.0)
 }
 
-/// The way along the circle [m].
-fn way(t: f32) -> f32 {
+/// Distance that it ran along the circle [m].
+fn path_length(t: f32) -> f32 {
     let since = (t - 0.5).max(0.0);
     SPEED
         * if since < 1.0 {
@@ -168,7 +168,7 @@ fn way(t: f32) -> f32 {
 
 /// Phase of the step [rad].
 fn phase(t: f32) -> f32 {
-    TAU * CADENCE * way(t) / SPEED
+    TAU * CADENCE * path_length(t) / SPEED
 }
 
 /// Height above the ground while it jumps [m].
@@ -184,7 +184,7 @@ fn jump(t: f32) -> f32 {
 fn root(t: f32) -> Transform {
     // Put to the other side of the circle now and then.
     let jumps = (t / TELEPORTS).floor();
-    let angle = way(t) / RADIUS + PI * jumps;
+    let angle = path_length(t) / RADIUS + PI * jumps;
     let place = RADIUS * Vec3::new(angle.sin(), 0.0, angle.cos());
     // It faces along +z of its own, and runs along +x where the angle is 0.
     Transform::from_translation(place + jump(t) * Vec3::Y)

@@ -1,4 +1,4 @@
-//! How long the parts of a step take, and what a frame does with it.
+//! Times of the parts of a step, and what a frame does with them.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use tailorbird::{mesh::ClothMeshSystems, prelude::*};
 /// Measures the writing of meshes; the plugin measures the step.
 pub struct StageClockPlugin;
 
-/// How long the stages took last.
+/// Times of the stages in the last step.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct StageTimes {
     start: Option<WallClock>,

@@ -31,13 +31,13 @@ pub fn shift(scene: SceneKind) -> Vec3 {
     Vec3::X * (width + GAP)
 }
 
-/// Where both are looked at from.
+/// View of both cloths.
 pub fn view(scene: SceneKind) -> OrbitCamera {
     let alone = scene.view();
-    let way = shift(scene);
+    let offset = shift(scene);
     OrbitCamera {
-        focus: alone.focus + 0.5 * way,
-        distance: (alone.distance + 0.9 * way.x).min(15.0),
+        focus: alone.focus + 0.5 * offset,
+        distance: (alone.distance + 0.9 * offset.x).min(15.0),
         // Seen from the side, one would hide the other.
         yaw: 0.4 * alone.yaw,
         ..alone
@@ -52,7 +52,7 @@ pub fn spawn_beside(commands: &mut Commands, settings: &DemoSettings, assets: &m
         }
     });
     spawn_scene(commands, settings, assets);
-    let (way, solver) = (shift(settings.scene), settings.other_solver());
+    let (offset, solver) = (shift(settings.scene), settings.other_solver());
     commands.queue(move |world: &mut World| {
         for entity in of_scene(world) {
             let mut entity = world.entity_mut(entity);
@@ -67,10 +67,10 @@ pub fn spawn_beside(commands: &mut Commands, settings: &DemoSettings, assets: &m
                 continue;
             }
             if let Some(mut moving) = entity.get_mut::<Moving>() {
-                moving.offset = way;
+                moving.offset = offset;
             }
             if let Some(mut transform) = entity.get_mut::<Transform>() {
-                transform.translation += way;
+                transform.translation += offset;
             }
         }
     });
@@ -81,18 +81,18 @@ fn of_scene(world: &mut World) -> Vec<Entity> {
     all.iter(world).collect()
 }
 
-/// How one cloth does.
+/// Figures of one cloth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClothFigures {
-    /// How it is solved.
+    /// Its solver.
     pub solver: ClothSolver,
     /// Its particles.
     pub particles: usize,
-    /// How far it is stretched [-].
+    /// Stretch of its edges [-].
     pub stretch: ClothStretch,
 }
 
-/// What the cloths of the scene do, the first one first.
+/// Figures of the cloths of the scene, the first one first.
 pub fn figures(
     cloths: &Query<(&ClothSolver, &ClothParticles, &ClothTopology, Has<Beside>), With<SceneCloth>>,
 ) -> Vec<ClothFigures> {

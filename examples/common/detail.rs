@@ -1,21 +1,21 @@
-//! How much is drawn: everything, or what can be drawn in time without a graphics card.
+//! Detail of the picture: everything, or what can be drawn in time without a graphics card.
 
 use bevy::prelude::*;
 
 use super::{graphics::Adapter, settings::DemoSettings};
 
-/// How much is drawn.
+/// Detail of the picture.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
     /// Everything.
     #[default]
     Full,
-    /// What a processor draws some twenty times a second: a small window, coarse cloth, materials without gloss of
+    /// Detail that a processor draws some twenty times a second: a small window, coarse cloth, materials without gloss of
     /// their surroundings, small shadow maps, and nothing that goes over the whole picture once more.
     Low,
 }
 
-/// What the command line asks for.
+/// Wishes from the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wishes {
     /// Everything, however long it takes.
@@ -24,23 +24,23 @@ pub struct Wishes {
     pub size: Option<UVec2>,
     /// Particles along the longer side of the cloth.
     pub resolution: Option<u32>,
-    /// Whether the settings were read from a file, which says itself how many particles there are.
+    /// True if the settings were read from a file, which says itself how many particles there are.
     pub from_file: bool,
 }
 
-/// What a window opens with.
+/// Detail and settings that a window opens with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// How much is drawn.
+    /// Detail of the picture.
     pub detail: Detail,
     /// Width and height of the window [pixels].
     pub size: UVec2,
-    /// What is shown.
+    /// Settings at the start.
     pub settings: DemoSettings,
 }
 
 impl Detail {
-    /// What this renderer draws in time; everything where that is wished for.
+    /// Detail that this renderer draws in time; everything where that is wished for.
     pub const fn of(adapter: Adapter, fine: bool) -> Self {
         match adapter {
             Adapter::Software if !fine => Self::Low,
@@ -74,7 +74,7 @@ impl Detail {
 }
 
 impl Start {
-    /// What is wished for; where nothing is, what suits the renderer.
+    /// Takes what is wished for; where nothing is, what suits the renderer.
     pub fn new(adapter: Adapter, wishes: Wishes, settings: DemoSettings) -> Self {
         let detail = Detail::of(adapter, wishes.fine);
         let suits = detail.resolution().filter(|_| !wishes.from_file);

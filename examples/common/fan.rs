@@ -14,14 +14,14 @@ use super::{
 const AXIS: Vec3 = Vec3::new(0.0, 0.95, 1.5);
 /// Of its blades [m].
 const BLADES: f32 = 0.21;
-/// How far its air reaches [m].
+/// Distance that its air reaches [m].
 const REACH: f32 = 2.4;
 /// The air before the blades [m/s].
 const SPEED: f32 = 5.0;
 /// From one side to the other and back [s].
 const SWEEP: f32 = 7.0;
 
-/// What the fan moves: a box of air before it, along its z axis.
+/// Air that the fan moves: a box before it, along its z axis.
 fn draught() -> ClothWindZone {
     let size = Vec3::new(0.68, 0.68, REACH);
     ClothWindZone {

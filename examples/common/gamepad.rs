@@ -40,7 +40,7 @@ impl Plugin for GamepadPlugin {
 
 /// The most that the right stick turns the view [rad/s].
 const TURN: f32 = 2.0;
-/// How fast the triggers zoom [notches of the wheel/s].
+/// Speed at which the triggers zoom [notches of the wheel/s].
 const ZOOM: f32 = 8.0;
 
 fn press_buttons(pads: Query<&Gamepad>, mut settings: ResMut<DemoSettings>) {
@@ -78,12 +78,12 @@ fn turn_view(pads: Query<&Gamepad>, time: Res<Time<Real>>, mut cameras: Query<&m
     }
 }
 
-/// Where the stick pushed something, after the last two fixed steps. It is drawn between them, as cloth is.
+/// Places to which the stick pushed something, after the last two fixed steps. It is drawn between them, as cloth is.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Pushed {
     previous: Vec3,
     current: Vec3,
-    /// What was put into the `Transform` last; something else there was put there by somebody else.
+    /// Place that was put into the `Transform` last; another one there was put there by somebody else.
     drawn: Option<Vec3>,
 }
 

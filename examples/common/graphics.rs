@@ -1,11 +1,11 @@
-//! Whether there is something to draw with, and what.
+//! The graphics adapter: whether there is one, and of which kind.
 
 use bevy::{
     render::{render_resource::WgpuAdapterInfo, renderer::RenderInstance},
     tasks::block_on,
 };
 
-/// What draws.
+/// Kind of the adapter that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Adapter {
     /// A graphics card, or a part of the processor that is made for it.
@@ -15,7 +15,7 @@ pub enum Adapter {
 }
 
 impl Adapter {
-    /// Which one this is.
+    /// Kind of an adapter.
     pub fn of(info: &WgpuAdapterInfo) -> Self {
         // Bevy does not pass the type's name on.
         if format!("{:?}", info.device_type) == "Cpu" {
@@ -26,7 +26,7 @@ impl Adapter {
     }
 }
 
-/// What draws; where there is no graphics driver, what to do about it, in one line.
+/// Kind of the adapter that draws; an error tells in one line what to do where there is no graphics driver.
 ///
 /// # Errors
 /// When there is none.
@@ -45,7 +45,7 @@ fn advice() -> &'static str {
     }
 }
 
-/// Whether a window can be shown.
+/// Returns whether a window can be shown.
 pub fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")

@@ -31,30 +31,30 @@ impl Plugin for HandPlugin {
 /// The hand.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hand {
-    /// Where it is in the window [logical pixels], while it is shown.
+    /// Place in the window [logical pixels], while it is shown.
     pub at: Option<Vec2>,
-    /// Whether it takes what is under it.
+    /// True if it takes what is under it.
     pub closed: bool,
     /// Frames until it closes: what is under it is known by then.
     closes_in: u32,
 }
 
 /// The keys that move it, and where to: right and down.
-const WAYS: [(KeyCode, Vec2); 4] = [
+const DIRECTIONS: [(KeyCode, Vec2); 4] = [
     (KeyCode::KeyI, Vec2::NEG_Y),
     (KeyCode::KeyK, Vec2::Y),
     (KeyCode::KeyJ, Vec2::NEG_X),
     (KeyCode::KeyL, Vec2::X),
 ];
-/// How fast [heights of the window/s].
+/// Its speed [heights of the window/s].
 const SPEED: f32 = 0.4;
-/// How fast what it holds comes nearer or goes away [m/s].
+/// Speed at which what it holds comes nearer or goes away [m/s].
 const REACH: f32 = 0.8;
 /// The depth of what is under it comes back from the renderer some frames later.
 const LOOKS: u32 = 5;
 
 impl Hand {
-    /// Who it is among mouse and fingers.
+    /// Its number among mouse and fingers.
     pub const POINTER: PointerId =
         PointerId::Custom(Uuid::from_u128(0x6f0c_41f1_8a52_4a0e_9a5c_0d1b_7b62_33e4));
 
@@ -95,14 +95,14 @@ fn move_hand(
         input.pointer_id == PointerId::Mouse && matches!(input.action, PointerAction::Move { .. })
     });
     let (before, mut now) = (*hand, *hand);
-    let pressed = WAYS.iter().filter(|(key, _)| keys.pressed(*key));
-    let way: Vec2 = pressed.map(|(_, way)| *way).sum();
+    let pressed = DIRECTIONS.iter().filter(|(key, _)| keys.pressed(*key));
+    let direction: Vec2 = pressed.map(|(_, direction)| *direction).sum();
     let size = window.size();
-    if way != Vec2::ZERO || keys.just_pressed(KeyCode::KeyG) {
+    if direction != Vec2::ZERO || keys.just_pressed(KeyCode::KeyG) {
         let at = now.at.unwrap_or(0.5 * size);
-        let way = way * SPEED * size.y * time.delta_secs();
+        let displacement = direction * SPEED * size.y * time.delta_secs();
         // At the very edge it would be outside.
-        now.at = Some((at + way).clamp(Vec2::ONE, (size - 1.0).max(Vec2::ONE)));
+        now.at = Some((at + displacement).clamp(Vec2::ONE, (size - 1.0).max(Vec2::ONE)));
     }
     if keys.just_pressed(KeyCode::KeyG) {
         let opens = now.closed || now.closes_in > 0;
@@ -112,7 +112,7 @@ fn move_hand(
         now.closed = now.closes_in == 0;
     }
     let idle = !now.closed && now.closes_in == 0;
-    if keys.just_pressed(KeyCode::Escape) || mouse_moved && idle && way == Vec2::ZERO {
+    if keys.just_pressed(KeyCode::Escape) || mouse_moved && idle && direction == Vec2::ZERO {
         now = Hand::default();
     }
     let at = now.at.or(before.at).unwrap_or_default();
@@ -141,13 +141,13 @@ fn move_hand(
 /// U and O bring what it holds nearer, and farther away.
 fn reach(keys: Res<ButtonInput<KeyCode>>, time: Res<Time<Real>>, mut held: Query<&mut ClothDrag>) {
     let sign = |key| f32::from(u8::from(keys.pressed(key)));
-    let way = (sign(KeyCode::KeyO) - sign(KeyCode::KeyU)) * REACH * time.delta_secs();
-    if way == 0.0 {
+    let displacement = (sign(KeyCode::KeyO) - sign(KeyCode::KeyU)) * REACH * time.delta_secs();
+    if displacement == 0.0 {
         return;
     }
     for mut drag in &mut held {
         if drag.pointer == Hand::POINTER {
-            drag.depth = (drag.depth + way).max(0.1);
+            drag.depth = (drag.depth + displacement).max(0.1);
         }
     }
 }

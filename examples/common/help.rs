@@ -1,4 +1,4 @@
-//! What mouse, keys, fingers and gamepad do.
+//! Controls by mouse, keys, fingers and gamepad.
 
 /// Every key and button with what it does.
 pub const CONTROLS: [(&str, &str); 26] = [
@@ -30,7 +30,7 @@ pub const CONTROLS: [(&str, &str); 26] = [
     ("south, west, shoulders", "pause, reset, scenes"),
 ];
 
-/// As text, one line each, indented.
+/// The controls as text, one line each, indented.
 pub fn text() -> String {
     CONTROLS
         .iter()

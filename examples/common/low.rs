@@ -53,11 +53,11 @@ pub struct LowMaterial {
     #[sampler(3)]
     plain: Option<Handle<Image>>,
     unlit: bool,
-    /// Whether nothing is drawn where the colour is transparent.
+    /// True if nothing is drawn where the colour is transparent.
     holes: bool,
 }
 
-/// What the shader is told.
+/// Uniforms of the shader.
 #[derive(ShaderType, Clone, Copy, Debug)]
 struct LowSurface {
     color: Vec4,
@@ -66,7 +66,7 @@ struct LowSurface {
     surface: Vec4,
 }
 
-/// What the shader is built for.
+/// Key that the shader is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LowKey {
     textured: bool,

@@ -1,4 +1,4 @@
-//! What the demo, the gallery and the tests share: scenes, stage, camera, panel, scripts, pictures.
+//! Parts that the demo, the gallery and the tests share: scenes, stage, camera, panel, scripts, pictures.
 
 #![allow(dead_code, reason = "each of them uses a part")]
 

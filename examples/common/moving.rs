@@ -22,7 +22,7 @@ impl Moving {
         }
     }
 
-    /// Where it is after so many seconds.
+    /// Its place after so many seconds.
     fn place(&self, seconds: f32) -> Transform {
         let place = (self.path)(seconds);
         place.with_translation(place.translation + self.offset)

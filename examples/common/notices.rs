@@ -1,4 +1,4 @@
-//! What the player is told: what is wrong, until it is closed, and what was done, for some seconds.
+//! Notices to the player: what is wrong, until it is closed, and what was done, for some seconds.
 
 use bevy::prelude::*;
 use bevy_egui::egui;
@@ -7,7 +7,7 @@ use tailorbird::prelude::*;
 /// Collects what the plugin reports.
 pub struct NoticesPlugin;
 
-/// What is shown at the moment, the oldest first.
+/// Notices that are shown at the moment, the oldest first.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Notices {
     list: Vec<Notice>,
@@ -19,18 +19,18 @@ pub struct Notices {
 pub struct Notice {
     /// In words.
     pub text: String,
-    /// Whether something is wrong.
+    /// True if something is wrong.
     pub wrong: bool,
-    /// How often it was said.
+    /// Number of times that it was said.
     pub times: u32,
     /// When it was said last [s].
     since: f64,
 }
 
 impl Notices {
-    /// How long the player can read what was done [s].
+    /// Time for which a notice of what was done is shown [s].
     pub const SECONDS: f64 = 6.0;
-    /// As many are kept.
+    /// Largest number of notices that are kept.
     pub const MOST: usize = 5;
 
     /// Says that something is wrong. It stays until the player closes it.
@@ -121,7 +121,7 @@ fn report_resources(
     }
 }
 
-/// What is wrong: red, with a button that closes it.
+/// Colour of what is wrong: red, with a button that closes it.
 pub const RED: egui::Color32 = egui::Color32::from_rgb(255, 120, 110);
 
 /// Shows what is wrong, each with a button that closes it.

@@ -30,12 +30,12 @@ use super::{
     settings::DemoSettings, stage::StagePlugin,
 };
 
-/// What is drawn, and where to.
+/// A picture to draw, and its file.
 #[derive(Clone, Debug)]
 pub struct OffscreenOptions {
     /// The folder; it is made if it does not exist.
     pub dir: PathBuf,
-    /// How much is played [s].
+    /// Duration that is played [s].
     pub seconds: f32,
     /// The time between two pictures [s].
     pub every: f32,
@@ -45,7 +45,7 @@ pub struct OffscreenOptions {
     pub fine: bool,
     /// The scene, and how.
     pub settings: DemoSettings,
-    /// What happens.
+    /// Events on the way.
     pub script: Script,
 }
 
@@ -298,7 +298,7 @@ pub fn plugins(size: UVec2) -> bevy::app::PluginGroupBuilder {
         .disable::<PipelinedRenderingPlugin>()
 }
 
-/// What a runner does before its first frame.
+/// Completes the app as a runner does before its first frame.
 pub fn complete(app: &mut App) {
     while app.plugins_state() == PluginsState::Adding {
         bevy::tasks::tick_global_task_pools_on_main_thread();

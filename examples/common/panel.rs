@@ -26,7 +26,7 @@ const MARGIN: f32 = 6.0;
 /// The most of the window's width that it covers [-].
 const MOST: f32 = 1.0 / 3.0;
 
-/// How wide what is in the panel is, in a window of this width [points].
+/// Width of what is in the panel, in a window of this width [points].
 fn inner_width(window: f32) -> f32 {
     WIDTH.min(window * MOST - AROUND - MARGIN).max(80.0)
 }
@@ -36,10 +36,10 @@ pub fn covered(window: f32) -> f32 {
     ((inner_width(window) + AROUND + MARGIN) / window.max(1.0)).min(0.5)
 }
 
-/// What the panel says where it is the processor that draws.
+/// Text of the panel where it is the processor that draws.
 pub const LOW: &str = "software renderer; --fine has everything";
 
-/// What the panel shows and changes.
+/// State that the panel shows and changes.
 pub struct PanelState<'a> {
     /// Is changed.
     pub settings: &'a mut DemoSettings,
@@ -49,7 +49,7 @@ pub struct PanelState<'a> {
     pub notices: &'a mut Notices,
     /// Are shown.
     pub pictures: &'a Pictures,
-    /// What the player asked for is added.
+    /// Requests of the player, to which the panel adds.
     pub asks: &'a mut Vec<Ask>,
 }
 

@@ -91,7 +91,7 @@ pub fn beside(context: &egui::Context, status: &Status) {
         });
 }
 
-/// As the panel calls it.
+/// Name of a solver in the panel.
 pub fn solver_name(solver: ClothSolver) -> &'static str {
     match solver {
         ClothSolver::Chains => "chains",

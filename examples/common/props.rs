@@ -1,4 +1,4 @@
-//! What cloth hangs from in the scenes.
+//! Props that cloth hangs from in the scenes.
 
 use std::f32::consts::FRAC_PI_2;
 

@@ -5,7 +5,7 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 /// Of something that is drawn.
 pub type MaterialOf = MeshMaterial3d<StandardMaterial>;
 
-/// What is needed to show a scene.
+/// Everything that is needed to show a scene.
 #[derive(SystemParam)]
 pub struct SceneAssets<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,

@@ -171,7 +171,7 @@ impl SceneKind {
         }
     }
 
-    /// Where its ball is at the start, given the radius [m].
+    /// Position of its ball at the start, given the radius [m].
     pub fn sphere_position(self, radius: f32) -> Vec3 {
         match self {
             Self::Curtain => Vec3::new(0.0, radius, 1.1),
@@ -186,7 +186,7 @@ impl SceneKind {
         }
     }
 
-    /// Where it is looked at from.
+    /// View of the scene at the start.
     pub fn view(self) -> OrbitCamera {
         let (focus, yaw, pitch, distance) = match self {
             Self::Curtain => (Vec3::new(0.0, 0.98, 0.0), 24.0, 8.0, 4.2),
@@ -222,7 +222,7 @@ impl SceneKind {
         }
     }
 
-    /// What holds it, with `longer` particles along the longer side.
+    /// Pins that hold it, with `longer` particles along the longer side.
     pub fn pins(self, longer: u32) -> ClothPins {
         match self {
             Self::Curtain => corners(&ClothCorner::TOP, Vec3::new(0.82, 0.0, 0.0)),
@@ -236,7 +236,7 @@ impl SceneKind {
         }
     }
 
-    /// Where its cloth is.
+    /// Place of its cloth.
     pub fn transform(self) -> Transform {
         let flat = Quat::from_rotation_x(-FRAC_PI_2);
         match self {
@@ -295,7 +295,7 @@ fn corners(which: &[ClothCorner], at: Vec3) -> ClothPins {
     }
 }
 
-/// How the scene's cloth looks. What has a colour of its own is not dyed.
+/// Look of the scene's cloth. A fabric that has a colour of its own is not dyed.
 pub fn look(settings: &DemoSettings) -> ClothLook {
     let fabric = ClothFabric::by_name(settings.preset).unwrap_or_default();
     let dye = match &*fabric.name {

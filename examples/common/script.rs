@@ -43,7 +43,7 @@ Script: one line for each action: the time [s], the action, its values. Empty li
   4.0 orbit 40 5 over 1     turns the camera to the right and up [degrees]
   4.0 zoom 2                notches";
 
-/// What a player does, in order of time.
+/// Actions of a player, in order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
     /// The actions, the first one first.
@@ -55,7 +55,7 @@ pub struct Script {
 pub struct Cue {
     /// [s].
     pub at: f32,
-    /// What happens.
+    /// The action.
     pub action: Action,
 }
 
@@ -72,18 +72,18 @@ pub enum Action {
     Release,
     /// Moves the pointer to the right and down [heights of the picture].
     Move {
-        /// Which way.
+        /// Displacement.
         by: Vec2,
-        /// How long it takes [s].
+        /// Duration [s].
         over: f32,
     },
     /// Turns the wheel [notches].
     Wheel(f32),
     /// Holds a key.
     Key {
-        /// Which one.
+        /// The key.
         key: KeyCode,
-        /// How long [s]; 0 is one frame.
+        /// Duration [s]; 0 is one frame.
         seconds: f32,
     },
     /// Sets the wind [m/s].
@@ -96,14 +96,14 @@ pub enum Action {
     Look {
         /// What.
         name: String,
-        /// Whether it is shown.
+        /// True if it is shown.
         shown: bool,
     },
     /// Turns the camera [°].
     Orbit {
         /// To the right and up.
         by: Vec2,
-        /// How long it takes [s].
+        /// Duration [s].
         over: f32,
     },
     /// Brings the camera closer [notches].

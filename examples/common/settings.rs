@@ -14,13 +14,13 @@ pub type PresetName = &'static str;
 #[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DemoSettings {
-    /// Which scene is shown.
+    /// Scene that is shown.
     #[serde(
         serialize_with = "file::write_scene",
         deserialize_with = "file::read_scene"
     )]
     pub scene: SceneKind,
-    /// How often the scene was started anew. A change starts it again.
+    /// Number of times that the scene was started anew. A change starts it again.
     #[serde(skip)]
     pub resets: u32,
     /// Particles along the longer side of the cloth.
@@ -28,43 +28,43 @@ pub struct DemoSettings {
     /// The name of the preset that was chosen last.
     #[serde(rename = "fabric", deserialize_with = "file::read_preset")]
     pub preset: PresetName,
-    /// What the cloth is made of.
+    /// Material of the cloth.
     pub material: ClothMaterial,
-    /// How the cloth is shaded.
+    /// Shading of the cloth.
     pub shading: ClothShading,
     /// Acceleration of gravity, downwards [m/s²].
     pub gravity: f32,
-    /// How the constraints are solved.
+    /// Solver of the constraints.
     pub solver: ClothSolver,
     /// Substeps of a step, where they are not chosen automatically.
     #[serde(with = "file::Substeps")]
     pub substeps: Option<u32>,
     /// Iterations of a substep.
     pub iterations: u32,
-    /// Whether time stands still.
+    /// True if time stands still.
     pub paused: bool,
-    /// How often a single step was asked for. A change does as many steps.
+    /// Number of single steps that were asked for. A change does as many steps.
     #[serde(skip)]
     pub single_steps: u32,
     /// The air.
     pub wind: ClothWind,
     /// Radius of the ball [m].
     pub sphere_radius: f32,
-    /// How fast the keys move the ball [m/s].
+    /// Speed at which the keys move the ball [m/s].
     pub sphere_speed: f32,
-    /// How far from the grabbed particle cloth is pulled along [m].
+    /// Distance from the grabbed particle within which cloth is pulled along [m].
     pub grab_radius: f32,
-    /// What is drawn.
+    /// Parts that are drawn.
     pub look: Look,
-    /// How the cloth under the pointer is found.
+    /// Method that finds the cloth under the pointer.
     #[serde(with = "file::Picking")]
     pub picking: ClothPickingBackend,
-    /// Whether a second cloth hangs beside the first, held by the other solver. Goes with the scene.
+    /// True if a second cloth hangs beside the first, held by the other solver. Goes with the scene.
     #[serde(skip)]
     pub beside: bool,
 }
 
-/// What is drawn.
+/// Parts that are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Look {
@@ -202,7 +202,7 @@ impl DemoSettings {
 }
 
 impl Look {
-    /// What the lens may be.
+    /// Allowed f-numbers of the lens.
     pub const F_NUMBERS: std::ops::RangeInclusive<f32> = 0.2..=16.0;
 
     /// All that can be shown, by name.

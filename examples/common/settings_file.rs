@@ -33,7 +33,7 @@ pub enum SettingsFileError {
     /// The file cannot be read.
     #[error("{} cannot be read: {reason}", .file.display())]
     Read {
-        /// Which one.
+        /// The file.
         file: PathBuf,
         /// Why.
         reason: String,
@@ -41,23 +41,23 @@ pub enum SettingsFileError {
     /// The file cannot be written.
     #[error("{} cannot be written: {reason}", .file.display())]
     Write {
-        /// Which one.
+        /// The file.
         file: PathBuf,
         /// Why.
         reason: String,
     },
-    /// What is in the file is not allowed there.
+    /// A value in the file is not allowed there.
     #[error("{}, line {line}: {field} {problem}, must be {allowed}", .file.display())]
     Content {
-        /// Which one.
+        /// The file.
         file: PathBuf,
         /// Where, from 1 on.
         line: usize,
         /// The field, with a point between each field and the one within.
         field: String,
-        /// What is wrong with it.
+        /// Fault of the value.
         problem: String,
-        /// What is allowed.
+        /// Values that are allowed.
         allowed: String,
     },
 }
@@ -99,7 +99,7 @@ fn options() -> ron::Options {
 /// Settings as text.
 ///
 /// # Errors
-/// Where RON cannot say it.
+/// Settings that RON cannot say.
 pub fn to_text(settings: &DemoSettings) -> Result<String, ron::Error> {
     let config = PrettyConfig::new().struct_names(false);
     let mut text = options().to_string_pretty(settings, config)?;
@@ -141,7 +141,7 @@ pub fn from_text(text: &str, file: &Path) -> Result<DemoSettings, SettingsFileEr
     }
 }
 
-/// What else a scene brings, and whether it is in a file.
+/// Other parts that a scene brings, and whether each is in a file.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Given {
@@ -155,7 +155,7 @@ struct Given {
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Option<u32>")]
 pub enum Substeps {
-    /// As many as the cloth needs.
+    /// Number that the cloth needs.
     #[serde(rename = "Automatic")]
     None,
     /// So many.
@@ -246,7 +246,7 @@ fn not_allowed(settings: &DemoSettings) -> Option<(String, String, String)> {
     })
 }
 
-/// What RON does not understand.
+/// Describes what RON does not understand.
 fn describe(error: &SpannedError, text: &str, file: &Path) -> SettingsFileError {
     let one_of = |names: &[&str]| format!("one of {}", names.join(", "));
     let here = error.span.start.line;

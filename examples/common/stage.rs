@@ -1,4 +1,4 @@
-//! Where the scenes play: camera, light, ground and sky.
+//! The stage of the scenes: camera, light, ground and sky.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -26,11 +26,11 @@ use super::{
 /// Camera, light, ground and sky.
 #[derive(Clone, Default)]
 pub struct StagePlugin {
-    /// What the camera draws to; the window unless another is given.
+    /// Target of the camera; the window unless another is given.
     pub target: RenderTarget,
     /// Smooth edges even without a graphics card, where they take three times as long.
     pub fine: bool,
-    /// How much is drawn.
+    /// Detail of the picture.
     pub detail: Detail,
 }
 
@@ -55,7 +55,7 @@ impl Plugin for StagePlugin {
     }
 }
 
-/// What the camera is to be like.
+/// Properties of the camera.
 #[derive(Resource, Clone)]
 struct StageCamera(StagePlugin);
 

@@ -1,4 +1,4 @@
-//! What the panel shows: frame rate, times, stretch, now and over the last seconds.
+//! Figures that the panel shows: frame rate, times, stretch, now and over the last seconds.
 
 use std::collections::VecDeque;
 
@@ -30,7 +30,7 @@ impl Plugin for StatusPlugin {
 /// Figures of now and of the last seconds.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Status {
-    /// How much is drawn.
+    /// Detail of the picture.
     pub detail: Detail,
     /// Frames per second.
     pub frame_rate: f64,
@@ -57,16 +57,16 @@ pub struct Status {
 pub struct Sample {
     /// [s].
     pub time: f64,
-    /// How long a step took [ms].
+    /// Time of a step [ms].
     pub step_time: f64,
-    /// How long a frame took [ms].
+    /// Time of a frame [ms].
     pub frame_time: f64,
     /// The largest stretch [%].
     pub stretch: f64,
 }
 
 impl Status {
-    /// How far back the samples go [s].
+    /// Time that the samples go back [s].
     pub const SPAN: f64 = 10.0;
 
     /// Adds a sample and forgets those that are too old.

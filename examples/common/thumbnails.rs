@@ -15,7 +15,7 @@ pub type Pictures = [Option<egui::TextureId>; SceneKind::ALL.len()];
 #[derive(Resource, Clone, Debug)]
 pub struct Thumbnails {
     files: [Handle<Image>; SceneKind::ALL.len()],
-    /// What the panel shows.
+    /// Pictures for the panel.
     pub pictures: Pictures,
 }
 

@@ -29,10 +29,10 @@ const TURN: f32 = 0.006;
 const ZOOM: f32 = 1.0 / 0.12;
 
 fn fingers(touches: &Touches) -> Option<[(Vec2, Vec2); 2]> {
-    let mut ways = touches
+    let mut moves = touches
         .iter()
         .map(|touch| (touch.previous_position(), touch.position()));
-    match (ways.next(), ways.next(), ways.next()) {
+    match (moves.next(), moves.next(), moves.next()) {
         (Some(one), Some(other), None) => Some([one, other]),
         _ => None,
     }
@@ -67,11 +67,11 @@ fn turn_by_fingers(
     if panel.is_some_and(|panel| panel.wants_any_pointer_input()) {
         return;
     }
-    let way = 0.5 * (one.1 - one.0 + other.1 - other.0);
+    let displacement = 0.5 * (one.1 - one.0 + other.1 - other.0);
     let (before, now) = (one.0.distance(other.0), one.1.distance(other.1));
     for mut camera in &mut cameras {
-        if way != Vec2::ZERO {
-            camera.turn(-TURN * way.x, TURN * way.y);
+        if displacement != Vec2::ZERO {
+            camera.turn(-TURN * displacement.x, TURN * displacement.y);
         }
         if before > 1.0 && now > 1.0 && before != now {
             camera.zoom(ZOOM * (now / before).ln());

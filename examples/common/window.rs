@@ -35,7 +35,7 @@ impl Plugin for PanelPlugin {
     }
 }
 
-/// What is typed into the panel, or done over it, reaches nothing else.
+/// Keeps to the panel what is typed into it, or done over it.
 fn keep_input_of_panel(mut egui: ResMut<EguiGlobalSettings>) {
     egui.enable_absorb_bevy_input_system = true;
 }

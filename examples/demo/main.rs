@@ -162,7 +162,7 @@ fn draw(arguments: &Arguments, dir: PathBuf) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the command line asks for; a scene that it names comes with its own material, wind and ball.
+/// Settings from the command line; a scene that it names comes with its own material, wind and ball.
 fn settings(arguments: &Arguments, scene: Option<SceneKind>) -> Result<DemoSettings, String> {
     let mut settings = match &arguments.settings {
         Some(file) => settings_file::load(file).map_err(|error| error.to_string())?,

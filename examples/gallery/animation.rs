@@ -10,14 +10,14 @@ use thiserror::Error;
 
 use super::shrink::shrink;
 
-/// What an animation is to be like.
+/// Properties of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Animation {
     /// Width [pixels].
     pub width: u16,
     /// Height [pixels].
     pub height: u16,
-    /// How long each picture is shown [10 ms].
+    /// Time for which each picture is shown [10 ms].
     pub delay: u16,
 }
 
@@ -30,20 +30,20 @@ pub enum AnimationError {
     /// More than a page should load.
     #[error("the animation has {bytes} bytes; {} are allowed", Animation::LARGEST)]
     TooLarge {
-        /// How many it has.
+        /// Its size.
         bytes: usize,
     },
 }
 
 /// The index that leaves a pixel as it was; the colours are those before it.
 const UNCHANGED: u8 = 255;
-/// How far dithering moves a colour up or down at most [-], out of 255: about the distance of neighbours in the palette.
+/// Largest change of a colour by dithering, up or down [-], out of 255: about the distance of neighbours in the palette.
 const DITHER: f32 = 2.5;
 /// Of how many pictures one is looked at for the palette.
 const PICTURES_FOR_PALETTE: usize = 4;
 
 impl Animation {
-    /// How large a file may be [bytes].
+    /// Largest size of a file [bytes].
     pub const LARGEST: usize = 4_000_000;
 
     /// The file, which plays again and again.
@@ -188,7 +188,7 @@ mod tests {
         (0..count).map(picture).collect()
     }
 
-    /// What a viewer shows after each picture, and how many bytes each one changes.
+    /// Pictures that a viewer shows, one after the other, and the number of bytes that each one changes.
     fn play(file: &[u8]) -> Vec<(Vec<[u8; 3]>, usize)> {
         let mut options = DecodeOptions::new();
         options.set_color_output(ColorOutput::RGBA);

@@ -15,7 +15,7 @@ pub enum CompareError {
     Read {
         /// Its path.
         path: PathBuf,
-        /// What is wrong.
+        /// The cause.
         source: image::ImageError,
     },
     /// It has another shape than the stored one.
@@ -23,7 +23,7 @@ pub enum CompareError {
     Shape {
         /// Its path.
         path: PathBuf,
-        /// What is wrong.
+        /// The cause.
         source: Proportions,
     },
     /// It looks otherwise.

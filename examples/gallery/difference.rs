@@ -1,4 +1,4 @@
-//! How different two pictures look.
+//! Difference between two pictures, as an eye sees it.
 //!
 //! Both are shrunk to 160×90 means of light, and compared in CIE L*a*b*: ΔE is the distance there, 1 is what an eye just
 //! sees side by side, black and white are 100 apart. Edges that another renderer or sampling draws otherwise are lost in the
@@ -12,16 +12,16 @@ use thiserror::Error;
 
 use super::shrink::shrink;
 
-/// How different two pictures look.
+/// Difference between two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// Mean over the picture [ΔE].
     pub mean: f32,
-    /// What 99 % of the picture stay below [ΔE].
+    /// Difference that 99 % of the picture stay below [ΔE].
     pub most: f32,
 }
 
-/// What two pictures of the same may differ by. Measured: with and without smooth edges a mean of at most 0.20 and 2.4 at the
+/// Tolerance between two pictures of the same. Measured: with and without smooth edges a mean of at most 0.20 and 2.4 at the
 /// 99 % quantile, 0.08 s later at least 0.42 and 7.6.
 pub const TOLERANCE: Difference = Difference {
     mean: 0.3,
@@ -63,7 +63,7 @@ impl Difference {
         })
     }
 
-    /// Whether it is no more than this.
+    /// Returns whether it is no more than this.
     pub fn within(self, allowed: Self) -> bool {
         self.mean <= allowed.mean && self.most <= allowed.most
     }

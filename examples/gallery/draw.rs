@@ -23,7 +23,7 @@ use crate::{
     shrink::shrink_picture,
 };
 
-/// What is drawn, and where to.
+/// Pictures to draw, and their folder.
 #[derive(Clone, Debug)]
 pub struct Gallery {
     /// The folder; it is made if it does not exist.
@@ -34,7 +34,7 @@ pub struct Gallery {
     pub animated: bool,
     /// Drawn twice as wide and high, and shrunk.
     pub fine: bool,
-    /// How much later than chosen the pictures are taken [s].
+    /// Time by which the pictures are taken later than chosen [s].
     pub later: f32,
 }
 
@@ -43,7 +43,7 @@ pub struct Gallery {
 pub struct Written {
     /// Its path.
     pub path: PathBuf,
-    /// How large it is [bytes].
+    /// Its size [bytes].
     pub bytes: u64,
 }
 
@@ -55,23 +55,23 @@ pub enum DrawError {
     Draw {
         /// Of which scene.
         scene: SceneKind,
-        /// What is wrong.
+        /// The cause.
         source: OffscreenError,
     },
-    /// What happens in a scene cannot be read.
+    /// A script of a scene cannot be read.
     #[error("the script of {scene}: {why}")]
     Script {
-        /// Which scene.
+        /// The scene.
         scene: SceneKind,
-        /// Which line, and what is wrong.
+        /// Line, and what is wrong there.
         why: String,
     },
     /// An animation that is not as it should be.
     #[error("{}: {source}", path.display())]
     Animation {
-        /// Where it would have been written.
+        /// Path that it would have been written to.
         path: PathBuf,
-        /// What is wrong.
+        /// The cause.
         source: AnimationError,
     },
     /// A file cannot be written.
@@ -79,7 +79,7 @@ pub enum DrawError {
     Write {
         /// Its path.
         path: PathBuf,
-        /// What is wrong.
+        /// The cause.
         source: io::Error,
     },
     /// A picture cannot be written.
@@ -87,7 +87,7 @@ pub enum DrawError {
     Save {
         /// Its path.
         path: PathBuf,
-        /// What is wrong.
+        /// The cause.
         source: image::ImageError,
     },
 }

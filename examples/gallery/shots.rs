@@ -9,7 +9,7 @@ pub struct Shots {
     pub still: f32,
     /// When the animation begins [s].
     pub start: f32,
-    /// What happens.
+    /// Events on the way.
     pub script: Script,
 }
 
@@ -23,7 +23,7 @@ impl Shots {
     /// Pictures of an animation: 3 s.
     const PICTURES: u32 = 38;
 
-    /// Those of a scene.
+    /// Shots of a scene.
     ///
     /// # Errors
     /// When its script cannot be read.

@@ -57,7 +57,7 @@ fn each_still_is_as_itself_and_unlike_the_others() {
     }
 }
 
-/// As another renderer rounds, and draws edges.
+/// Another renderer rounds, and draws edges, in its own way.
 #[test]
 fn other_rounding_and_edges_pass() {
     for scene in SCENES {

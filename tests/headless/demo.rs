@@ -97,10 +97,10 @@ fn c_puts_the_other_solver_beside_and_takes_it_away() {
                 let sum: Vec3 = (0..count).map(|i| particles.world_position(i, frame)).sum();
                 sum / count as f32
             };
-            let way = (middle(cloths[1]) - middle(cloths[0])).abs();
+            let offset = (middle(cloths[1]) - middle(cloths[0])).abs();
             // The solvers differ in how far cloth falls, and in how a cape whose collar is narrower than it swings into place.
-            let wanted = compare::shift(scene).with_y(way.y);
-            assert!(way.distance(wanted) < 0.25, "{scene}: {way} {wanted}");
+            let wanted = compare::shift(scene).with_y(offset.y);
+            assert!(offset.distance(wanted) < 0.25, "{scene}: {offset} {wanted}");
         }
         tap(&mut app, KeyCode::KeyC);
         frames(&mut app, 2);
@@ -208,7 +208,7 @@ fn keys_hide_the_panel_go_through_the_scenes_and_turn_the_view() {
     assert_eq!(after.pitch, before.pitch);
 }
 
-/// Where the camera is.
+/// View of the camera.
 pub fn view(app: &mut App) -> OrbitCamera {
     let camera = one::<With<OrbitCamera>>(app);
     *get(app, camera)

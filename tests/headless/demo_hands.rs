@@ -55,8 +55,8 @@ fn one_finger_drags_cloth() {
     let held = get::<ClothGrab>(&app, cloth).particle().expect("held") as usize;
     let before = particle(&app, cloth, held);
     for step in 1..=30 {
-        let way = Vec2::new(2.0, -1.0) * step as f32;
-        finger(&mut app, 7, TouchPhase::Moved, place + way);
+        let displacement = Vec2::new(2.0, -1.0) * step as f32;
+        finger(&mut app, 7, TouchPhase::Moved, place + displacement);
         frames(&mut app, 1);
     }
     frames(&mut app, 20);
@@ -81,9 +81,19 @@ fn two_fingers_turn_and_zoom_and_hold_nothing() {
     frames(&mut app, 3);
     assert_eq!(get::<ClothGrab>(&app, cloth).particle(), None);
     for step in 1..=10 {
-        let way = step as f32;
-        finger(&mut app, 1, TouchPhase::Moved, place + 4.0 * way * Vec2::X);
-        finger(&mut app, 2, TouchPhase::Moved, other + 8.0 * way * Vec2::X);
+        let displacement = step as f32;
+        finger(
+            &mut app,
+            1,
+            TouchPhase::Moved,
+            place + 4.0 * displacement * Vec2::X,
+        );
+        finger(
+            &mut app,
+            2,
+            TouchPhase::Moved,
+            other + 8.0 * displacement * Vec2::X,
+        );
         frames(&mut app, 1);
     }
     let after = view(&mut app);
@@ -118,8 +128,11 @@ fn keys_move_a_hand_that_drags_cloth() {
         key(&mut app, code, ButtonState::Released);
     }
     frames(&mut app, 20);
-    let way = hand(&app).at.expect("shown") - at;
-    assert!(way.x > 50.0 && way.y < -50.0, "{way}");
+    let displacement = hand(&app).at.expect("shown") - at;
+    assert!(
+        displacement.x > 50.0 && displacement.y < -50.0,
+        "{displacement}"
+    );
     let moved = particle(&app, cloth, held) - before;
     assert!(moved.x > 0.1 && moved.y > 0.1, "{moved}");
 
@@ -205,11 +218,17 @@ fn sticks_and_triggers_move_ball_and_view() {
         .analog_mut()
         .set(GamepadAxis::LeftStickX, 1.0);
     frames(&mut app, 60);
-    let way = ball(&mut app) - start;
+    let displacement = ball(&mut app) - start;
     // A second at 1.5 m/s, to the right as seen; drawn up to a step late.
     let right = Quat::from_rotation_y(from.yaw) * Vec3::X;
-    assert!((way.dot(right) - 1.5).abs() < 0.06, "{way}");
-    assert!(way.reject_from(right).length() < 1e-4, "{way}");
+    assert!(
+        (displacement.dot(right) - 1.5).abs() < 0.06,
+        "{displacement}"
+    );
+    assert!(
+        displacement.reject_from(right).length() < 1e-4,
+        "{displacement}"
+    );
     pad(&mut app, entity)
         .analog_mut()
         .set(GamepadAxis::LeftStickX, 0.0);

@@ -1,4 +1,4 @@
-//! What a window of the demo opens with: what suits the renderer, unless the player wishes for something else.
+//! Detail that a window of the demo opens with: what suits the renderer, unless the player wishes for something else.
 
 use bevy::prelude::*;
 

@@ -259,8 +259,8 @@ fn the_hand_holds_at_few_frames_per_second() {
         let held = get::<ClothGrab>(&app, cloth).particle().expect("held") as usize;
         let from = particle(&app, cloth, held);
         let target = from + Vec3::new(0.1, 0.3, 0.0);
-        let way = on_screen(&app, camera, target) - on_screen(&app, camera, from);
-        point(&mut app, place + way);
+        let displacement = on_screen(&app, camera, target) - on_screen(&app, camera, from);
+        point(&mut app, place + displacement);
         frames(&mut app, 12);
         let away = particle(&app, cloth, held).distance(target);
         assert!(away < 0.04, "{n}: {away}");

@@ -1,7 +1,11 @@
 //! Held particles are drawn where their target is drawn.
 
 use bevy::prelude::*;
-use tailorbird::{cloth::attachment::ClothAttachedParticles, drawn::ClothDrawnHolds, prelude::*};
+use tailorbird::{
+    cloth::{attachment::ClothAttachedParticles, topology::order::Stored},
+    drawn::ClothDrawnHolds,
+    prelude::*,
+};
 
 use crate::world::{Sim, square};
 
@@ -20,7 +24,7 @@ fn attach(sim: &mut Sim, cloth: Entity, to: Entity, attachment: ClothAttachment)
     sim.spawn((attachment.to(to), ClothAttachmentOf(cloth)));
 }
 
-/// Where all particles are drawn, in the world, where the cloth and its targets are now.
+/// Drawn places of all particles, in the world, where the cloth and its targets are now.
 fn drawn(
     sim: &Sim,
     cloth: Entity,
@@ -40,7 +44,8 @@ fn drawn(
         |target| Some(now(target)?.into()),
     );
     let at = |i| place.transform_point(particles.interpolated(i, fraction) + holds.offset(i));
-    (0..particles.len()).map(at).collect()
+    let all = (0..particles.len() as u32).map(Stored);
+    all.map(at).collect()
 }
 
 #[test]

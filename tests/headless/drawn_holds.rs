@@ -1,4 +1,4 @@
-//! What is attached is drawn where its holder is drawn, in every frame, however frames and steps fall.
+//! Attached particles are drawn where their holder is drawn, in every frame, however frames and steps fall.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ fn swing(time: Res<Time<Virtual>>, mut bones: Query<&mut Transform, With<Bone>>)
     }
 }
 
-/// Where the vertices are drawn in the world.
+/// Drawn places of the vertices in the world.
 fn drawn(app: &App, cloth: Entity) -> Vec<Vec3> {
     let handle = &get::<Mesh3d>(app, cloth).0;
     let meshes = app.world().resource::<Assets<Mesh>>();
@@ -69,8 +69,8 @@ fn they_are_where_their_bone_is() {
             let at = *get::<GlobalTransform>(&app, bone);
             let all = drawn(&app, cloth);
             for (k, point) in held.iter().enumerate() {
-                let way = all[k].distance(at.transform_point(*point));
-                assert!(way < 1e-4, "{rate} Hz, frame {frame}: {way} m");
+                let distance = all[k].distance(at.transform_point(*point));
+                assert!(distance < 1e-4, "{rate} Hz, frame {frame}: {distance} m");
             }
             // What lies around them comes along: the bone is up to 15 cm further on than the cloth, which is spread over 60 cm.
             for k in 0..SIDE * (SIDE - 1) {

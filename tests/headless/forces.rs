@@ -12,7 +12,7 @@ fn floating(material: ClothMaterial) -> (Sim, Entity) {
     (sim, cloth)
 }
 
-/// What rounding adds to the momentum in this many steps: in each of eight substeps, and twice for each of the eight springs
+/// Momentum that rounding adds in this many steps: in each of eight substeps, and twice for each of the eight springs
 /// of each of 36 particles of 0.15 kg in all, a coordinate below half a metre is rounded; as a random walk, three times its
 /// standard deviation.
 fn momentum_rounding(steps: f32) -> f32 {

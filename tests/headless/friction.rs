@@ -6,7 +6,7 @@ use tailorbird::prelude::*;
 
 use crate::world::*;
 
-/// How far [m] a sheet slides down a slope of this angle within a second.
+/// Distance [m] that a sheet slides down a slope of this angle within a second.
 fn slid(angle: f32, cloth_friction: f32, ground_friction: f32) -> f32 {
     let mut sim = Sim::vacuum();
     let slope = Quat::from_rotation_z(-angle);

@@ -155,7 +155,7 @@ pub fn point(app: &mut App, position: Vec2) {
         }));
 }
 
-/// Where a camera shows a point of the world [logical pixels of the window].
+/// Place of a point of the world in the picture of a camera [logical pixels of the window].
 pub fn on_screen(app: &App, camera: Entity, point: Vec3) -> Vec2 {
     let camera = app.world().entity(camera);
     let (Some(view), Some(place)) = (camera.get::<Camera>(), camera.get::<GlobalTransform>())
@@ -217,7 +217,7 @@ pub fn get<C: Component>(app: &App, entity: Entity) -> &C {
     app.world().get::<C>(entity).expect("the component")
 }
 
-/// Where a particle is in the world.
+/// Position of a particle in the world.
 pub fn particle(app: &App, cloth: Entity, i: usize) -> Vec3 {
     get::<ClothParticles>(app, cloth).world_position(i, get::<ClothFrame>(app, cloth))
 }

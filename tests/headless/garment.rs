@@ -8,6 +8,7 @@ use bevy::{
     prelude::*,
 };
 use tailorbird::{
+    cloth::topology::order::Stored,
     mesh::{ClothMesh, ClothMeshOf},
     prelude::*,
 };
@@ -170,9 +171,10 @@ fn each_part_is_drawn_where_its_node_is() {
             .iter()
             .zip(positions(mesh_of(&app, part)))
         {
-            let given = topology.order.given(*particle);
-            assert_eq!(topology.order.stored(given), *particle);
-            let expected = frame.to_world(particles.interpolated(*particle as usize, fraction));
+            let particle = Stored(*particle);
+            let given = topology.order.given(particle);
+            assert_eq!(topology.order.stored(given), particle);
+            let expected = frame.to_world(particles.interpolated(particle, fraction));
             assert!((*place * p).distance(expected) < 1e-4, "{p} {expected}");
         }
     }

@@ -1,7 +1,7 @@
 //! A hand moves a particle to where it is; the cloth around follows without spikes, and falls when released.
 
 use bevy::prelude::*;
-use tailorbird::prelude::*;
+use tailorbird::{cloth::topology::order::Stored, prelude::*};
 
 use crate::world::*;
 
@@ -11,12 +11,12 @@ const HELD: usize = 8 * N + 8;
 /// The largest ratio of an edge around the hand to its length at rest.
 fn spike(sim: &Sim, cloth: Entity) -> f32 {
     let (particles, topology) = (sim.particles(cloth), sim.get::<ClothTopology>(cloth));
-    let neighbors = topology.neighbors(HELD as u32);
+    let neighbors = topology.neighbors(Stored(HELD as u32));
     assert_eq!(neighbors.len(), 8);
     neighbors
         .iter()
-        .map(|&n| {
-            let n = n as usize;
+        .map(|n| {
+            let n = n.index();
             let rest = topology.rest_positions[n].distance(topology.rest_positions[HELD]);
             particles.position(n).distance(particles.position(HELD)) / rest
         })

@@ -8,14 +8,14 @@ use crate::world::*;
 
 /// Coordinates are rounded in the cloth's frame, when they are pushed out, on the way to the world, and here \[parts of the largest\].
 const ROUNDING: f32 = 10.0 * f32::EPSILON;
-/// What passes for the largest at least \[m\].
+/// Least value that passes for the largest \[m\].
 const LEAST: f32 = 2.5;
 
 fn vector(range: f32) -> impl Strategy<Value = Vec3> {
     (-range..range, -range..range, -range..range).prop_map(|(x, y, z)| Vec3::new(x, y, z))
 }
 
-/// How far the deepest particle is below \[m\], and how much of that may be rounding.
+/// Depth of the deepest particle \[m\], and how much of it may be rounding.
 fn deepest(sim: &Sim, cloth: Entity, plane: Transform) -> (f32, f32) {
     let thickness = sim.get::<ClothMaterial>(cloth).thickness;
     let normal = plane.rotation * Vec3::Y;

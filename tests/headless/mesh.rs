@@ -11,6 +11,7 @@ use bevy::{
     time::TimeUpdateStrategy,
 };
 use tailorbird::{
+    cloth::topology::order::Stored,
     mesh::{ClothMesh, ClothVertexBinding},
     prelude::*,
 };
@@ -68,7 +69,7 @@ fn it_equals_the_particles_at_both_ends_and_lies_between_in_between() {
     let fixed = app.world().resource::<Time<Fixed>>().overstep_fraction();
     let particles = get::<ClothParticles>(&app, cloth).clone();
     for (i, p) in positions(&app, cloth).into_iter().enumerate() {
-        assert!(p.distance(particles.interpolated(i, fixed)) < 1e-6);
+        assert!(p.distance(particles.interpolated(Stored(i as u32), fixed)) < 1e-6);
     }
     let step = 1.0 / HERTZ;
     pass(&mut app, step * f64::from(1.0 - fixed) * 1.0001);
@@ -333,7 +334,7 @@ fn a_cloth_that_went_back_is_drawn_where_it_is() {
         let fixed = app.world().resource::<Time<Fixed>>().overstep_fraction();
         let places = positions(app, cloth).into_iter().enumerate();
         places
-            .map(|(i, p)| p.distance(particles.interpolated(i, fixed)))
+            .map(|(i, p)| p.distance(particles.interpolated(Stored(i as u32), fixed)))
             .fold(0.0, f32::max)
     };
     let second = f64::from(10.0 / HERTZ as f32);

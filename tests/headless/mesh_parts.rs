@@ -59,7 +59,7 @@ fn corners(mesh: &Mesh) -> Vec<(Vec3, Vec3)> {
     indices.iter().map(|i| (positions[i], normals[i])).collect()
 }
 
-/// Whether the normals of all triangles are on the sides from which they are drawn.
+/// Returns whether the normals of all triangles are on the sides from which they are drawn.
 fn is_lit_from_its_fronts(mesh: &Mesh) -> bool {
     corners(mesh).chunks(3).all(|c| {
         let front = (c[1].0 - c[0].0).cross(c[2].0 - c[0].0);

@@ -1,4 +1,4 @@
-//! What a cloth is made of, as it comes: compressed, painted, skinned, morphed; and cloth made anew when that is another one.
+//! Meshes that become cloth, as they come: compressed, painted, skinned, morphed; and cloth made anew when they are others.
 
 use bevy::{
     asset::RenderAssetUsages,

@@ -78,7 +78,7 @@ impl Bench {
             .collect();
     }
 
-    /// Where a text is shown.
+    /// Place at which a text is shown.
     fn find(&self, text: &str) -> Pos2 {
         find(&self.shapes, text).unwrap_or_else(|| panic!("{text:?} is not shown"))
     }

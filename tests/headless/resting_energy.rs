@@ -1,4 +1,4 @@
-//! What rests stays at rest: over ten minutes the kinetic energy of cloth that hangs or lies does not grow.
+//! Cloth at rest stays at rest: over ten minutes the kinetic energy of cloth that hangs or lies does not grow.
 
 use bevy::prelude::*;
 use tailorbird::prelude::*;

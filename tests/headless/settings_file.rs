@@ -16,7 +16,7 @@ fn read(text: &str) -> Result<DemoSettings, SettingsFileError> {
     from_text(text, Path::new("some.ron"))
 }
 
-/// What is wrong with a text: line, field and the whole message.
+/// Error of a text: line, field and the whole message.
 fn wrong(text: &str) -> (usize, String, String) {
     let error = read(text).expect_err("an error");
     let words = error.to_string();
@@ -26,7 +26,7 @@ fn wrong(text: &str) -> (usize, String, String) {
     }
 }
 
-/// What is counted up is no setting.
+/// Settings without what is counted up, which is no setting.
 fn comparable(settings: &DemoSettings) -> DemoSettings {
     DemoSettings {
         resets: 0,
@@ -278,7 +278,7 @@ fn a_fabric_brings_its_material() {
     assert_eq!(settings.material, ClothMaterial::denim());
 }
 
-/// As version 0.2 of the demo wrote it.
+/// A file of version 0.2 of the demo.
 #[test]
 fn files_of_earlier_versions_are_read() {
     let settings = read(

@@ -1,4 +1,4 @@
-//! What is drawn moves without stutter, and textures do not swim on it.
+//! Drawn cloth moves without stutter, and textures do not swim on it.
 
 use std::time::Duration;
 
@@ -105,7 +105,7 @@ fn a_display_of_144_hz_shows_60_steps_a_second_without_stutter() {
     assert!(drawn > 3.0 * bound, "{drawn} m, bound {bound} m");
 }
 
-/// How far a direction turns \[rad\].
+/// Angle by which a direction turns \[rad\].
 fn turned(a: Vec3, b: Vec3) -> f32 {
     a.angle_between(b)
 }
@@ -142,8 +142,8 @@ fn tangents_turn_no_faster_than_the_threads() {
                 let [a, b] = [a, b].map(|[x, y, z, _]| Vec3::new(x, y, z));
                 let (i, column) = (*particle as usize, *particle as usize % side);
                 // The threads to both sides, and the normal, turn.
-                let ways = [(column > 0, i.wrapping_sub(1)), (column + 1 < side, i + 1)];
-                let threads = ways
+                let beside = [(column > 0, i.wrapping_sub(1)), (column + 1 < side, i + 1)];
+                let threads = beside
                     .into_iter()
                     .filter(|(there, _)| *there)
                     .map(|(_, j)| turned(before.2[j] - before.2[i], now.2[j] - now.2[i]));
@@ -162,7 +162,7 @@ fn tangents_turn_no_faster_than_the_threads() {
     }
 }
 
-/// Where particles are drawn, by vertices.
+/// Drawn places of the particles, by vertices.
 fn positions_of_particles(app: &App, cloth: Entity) -> Vec<Vec3> {
     let parts = get::<tailorbird::mesh::ClothMesh>(app, cloth).parts();
     let drawn = positions(app, cloth);

@@ -72,7 +72,7 @@ struct Chase {
     deepest: f32,
 }
 
-/// How deep the straight path of each free particle through a substep goes into the sphere, in the sphere's own system.
+/// Depth to which the straight path of each free particle through a substep goes into the sphere, in the sphere's own system.
 fn chase(
     step: Res<ClothStep>,
     mut chase: ResMut<Chase>,

@@ -124,7 +124,7 @@ fn pause(app: &mut Offscreen, paused: bool) {
     app.app.world_mut().resource_mut::<ClothSettings>().paused = paused;
 }
 
-/// What is under the mouse.
+/// Hit under the mouse.
 fn hovered(app: &mut Offscreen) -> Option<(Entity, HitData)> {
     let world = app.app.world_mut();
     let mut pointers = world.query::<&PointerInteraction>();
@@ -134,7 +134,7 @@ fn hovered(app: &mut Offscreen) -> Option<(Entity, HitData)> {
         .cloned()
 }
 
-/// What is under the mouse there, when the answer has come.
+/// Hit under the mouse there, when the answer has come.
 fn pick(app: &mut Offscreen, at: Vec2) -> Option<(Entity, HitData)> {
     app.point(at);
     app.update(
@@ -179,7 +179,7 @@ fn pixel_of(app: &Offscreen, camera: Entity, cloth: Entity, particle: usize) -> 
     at.floor() + 0.5
 }
 
-/// Whether the cloth goes on all over the pixel, without an outline of the cloth or of a fold of it. Through an outline
+/// Returns whether the cloth goes on all over the pixel, without an outline of the cloth or of a fold of it. Through an outline
 /// the samples of a pixel show different things, and none of them is wrong.
 fn is_inside(app: &Offscreen, camera: Entity, cloth: Entity, at: Vec2) -> bool {
     let world = app.app.world();

@@ -1,7 +1,7 @@
 #![cfg(test)]
-//! What needs a graphics driver: pictures, and picking by depth. A software driver does.
+//! Tests that need a graphics driver: pictures, and picking by depth. A software driver does.
 //!
-//! Where there is none each test says so and is skipped; with `TAILORBIRD_REQUIRE_GPU` set it fails instead. The file
+//! Without a driver each test says so and is skipped; with `TAILORBIRD_REQUIRE_GPU` set it fails instead. The file
 //! named by `TAILORBIRD_SKIP_LOG` gets a line for each test that was skipped.
 
 #[path = "../../examples/common/mod.rs"]

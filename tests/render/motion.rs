@@ -25,7 +25,7 @@ const SIZE: UVec2 = UVec2::new(160, 120);
 /// Field of view [rad], and how far the camera is away [m].
 const FOV: f32 = 0.8;
 const AWAY: f32 = 3.0;
-/// What a motion of the whole picture's height would have as a colour.
+/// Colour that a motion of the whole picture's height would have.
 const GAIN: f32 = 20.0;
 
 const SHADER: Handle<Shader> = uuid_handle!("5b0f3c52-7f7e-4c8f-9a50-3c6b0e4f6a11");
@@ -280,7 +280,7 @@ fn chequered(app: &mut Offscreen) -> Handle<StandardMaterial> {
         .add(material)
 }
 
-/// How much contrast is left of a chequered sheet that falls past a camera with temporal anti-aliasing: mean difference of neighbours
+/// Contrast that is left of a chequered sheet that falls past a camera with temporal anti-aliasing: mean difference of neighbours
 /// in a column of pixels, 0 to 255.
 fn contrast_while_it_falls(test: &str, with_plugin: bool) -> Option<f32> {
     let mut app = Offscreen::with_plugins(test, SIZE, |plugins| {

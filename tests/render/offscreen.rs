@@ -33,7 +33,7 @@ use tailorbird::prelude::*;
 /// Time from one frame to the next.
 pub const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 60);
 
-/// Whether there is something to render with. Where there is not, says which test is skipped, or fails when
+/// Returns whether there is something to render with. Without, says which test is skipped, or fails when
 /// `TAILORBIRD_REQUIRE_GPU` is set.
 pub fn graphics(test: &str) -> bool {
     if has_adapter() {
@@ -85,7 +85,7 @@ impl Offscreen {
         })
     }
 
-    /// As [`Self::new`], with other default plugins.
+    /// [`Self::new`] with other default plugins.
     pub fn with_plugins(
         test: &str,
         size: UVec2,
@@ -143,7 +143,7 @@ impl Offscreen {
         })
     }
 
-    /// What a camera is to render to, to be in the picture.
+    /// Target of a camera that is to be in the picture.
     pub fn target(&self) -> RenderTarget {
         self.target.clone().into()
     }
@@ -164,7 +164,7 @@ impl Offscreen {
         }
     }
 
-    /// What was rendered to the target, while time stands still.
+    /// The picture in the target, while time stands still.
     pub fn picture(&mut self) -> Image {
         let strategy = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
         let running = std::mem::replace(&mut *self.app.world_mut().resource_mut(), strategy);
@@ -173,7 +173,7 @@ impl Offscreen {
         picture
     }
 
-    /// What was rendered to the target, while time goes on.
+    /// The picture in the target, while time goes on.
     pub fn picture_in_motion(&mut self) -> Image {
         let picture: Arc<Mutex<Option<Image>>> = Arc::default();
         let sender = picture.clone();

@@ -1,4 +1,4 @@
-//! What is drawn is the same whether vertices go to the mesh asset or to where the renderer keeps them.
+//! Pictures are the same whether vertices go to the mesh asset or to where the renderer keeps them.
 
 use bevy::{
     mesh::VertexAttributeValues, prelude::*, render::pipelined_rendering::PipelinedRenderingPlugin,
@@ -36,7 +36,7 @@ fn mesh_of(app: &Offscreen, cloth: Entity) -> Handle<Mesh> {
     mesh.expect("a mesh").0.clone()
 }
 
-/// Where the vertices of the mesh asset are.
+/// Vertices of the mesh asset.
 fn asset(app: &Offscreen, cloth: Entity) -> Vec<[f32; 3]> {
     let mesh = mesh_of(app, cloth);
     let meshes = app.app.world().resource::<Assets<Mesh>>();

@@ -57,7 +57,7 @@ fn find_roots(folder: &Path, roots: &mut Vec<PathBuf>) -> Result<(), Box<dyn Err
 /// The segments of a path.
 type Names = Vec<String>;
 
-/// What each file imports from which others.
+/// Names that each file imports from others.
 type Imports = BTreeMap<PathBuf, BTreeMap<PathBuf, BTreeSet<String>>>;
 
 /// The modules of a crate, by their paths.
@@ -66,7 +66,7 @@ struct Tree(BTreeMap<Names, Module>);
 
 struct Module {
     file: PathBuf,
-    /// What names mean that are defined elsewhere.
+    /// Meaning of names that are defined elsewhere.
     names: BTreeMap<String, Names>,
 }
 

@@ -90,7 +90,7 @@ fn missing_packages() -> Vec<&'static str> {
     missing
 }
 
-/// What `ldconfig -p` lists, or nothing where there is no ldconfig.
+/// Output of `ldconfig -p`, or nothing where there is no ldconfig.
 fn loader_cache() -> String {
     ["ldconfig", "/sbin/ldconfig"]
         .iter()
@@ -121,7 +121,7 @@ fn is_present(library: &Library, loader_cache: &str) -> bool {
             .any(|folder| folder.join(library.file).exists())
 }
 
-/// Whether the Vulkan loader would find the manifest of a driver, in the places where it looks.
+/// Returns whether the Vulkan loader would find the manifest of a driver, in the places where it looks.
 fn has_vulkan_driver() -> bool {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if env::var_os(variable).is_some() {

@@ -26,7 +26,7 @@ const WAIST: [f32; 2] = [0.165, 0.125];
 const BAND_HEIGHT: f32 = 0.045;
 const PANEL_LENGTH: f32 = 0.55;
 
-/// How far the panels go outwards for each metre of their length: this much cloth falls in folds.
+/// Distance that the panels go outwards for each metre of their length: this much cloth falls in folds.
 const FLARE: f32 = 0.72;
 
 /// The side of one tile of the textures \[m\].

@@ -27,7 +27,7 @@ use known::Known;
 use source::Source;
 use tests::{Fate, Tests};
 
-/// What to try.
+/// Mutants to try.
 #[derive(clap::Args)]
 pub struct Options {
     /// Mutants in whose line of the table this occurs
@@ -94,7 +94,7 @@ pub fn run(workspace: &Path, options: &Options) -> Result<ExitCode, Box<dyn Erro
     Ok(report.sum(&fates))
 }
 
-/// What the table says of a mutant.
+/// Row of the table about a mutant.
 fn row(sources: &[Source], mutant: &Mutant) -> String {
     let source = &sources[mutant.source];
     let (line, code) = (mutant.line, source.line(mutant.line));
@@ -136,7 +136,7 @@ fn fates(
     Ok(fates.into_iter().collect::<Result<_, String>>()?)
 }
 
-/// What is told.
+/// Report of a run.
 struct Report<'a> {
     sources: &'a [Source],
     mutants: &'a [Mutant],
@@ -165,7 +165,7 @@ impl Report<'_> {
         println!("{word:22} {}", row(self.sources, &self.mutants[k]));
     }
 
-    /// How many of each kind; fails where one survives that is not listed.
+    /// Prints the number of each kind; fails where one survives that is not listed.
     fn sum(&self, fates: &[Fate]) -> ExitCode {
         let count = |kinds: &[Fate]| fates.iter().filter(|fate| kinds.contains(fate)).count();
         let survives = |fate: &Fate| matches!(fate, Fate::Survived | Fate::NotReached);

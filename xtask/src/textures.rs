@@ -12,7 +12,7 @@ use crate::fabric::{self, Fabric, Texel};
 /// Samples along each side of a tile.
 const SAMPLES: usize = 2048;
 
-/// How much flatter than the yarns the normals are, so that light on them does not flicker from afar \[-\].
+/// Height of the relief in the normals, as a part of that of the yarns: flatter, so that light on them does not flicker from afar \[-\].
 const RELIEF: f32 = 0.7;
 
 /// Writes every fabric into `folder`, with `size` pixels along each side.

@@ -1,4 +1,4 @@
-//! What can be asked for on the command line.
+//! The command line.
 
 use std::path::PathBuf;
 
@@ -18,14 +18,14 @@ pub struct Cli {
     pub measure: MeasureArgs,
 }
 
-/// What else can be done.
+/// Other commands.
 #[derive(Subcommand, Debug)]
 pub enum Command {
     /// Draw mean stretch against time from one or more JSON files.
     Plot(PlotArgs),
 }
 
-/// Which measurements to take.
+/// Choice of measurements.
 #[derive(Args, Debug)]
 pub struct MeasureArgs {
     /// Particles along a side; repeat it for several.
@@ -37,7 +37,7 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "K", default_values_t = [15], value_parser = clap::value_parser!(u8).range(1..))]
     pub iterations: Vec<u8>,
 
-    /// Who is measured; repeat it for several [default: all that are built].
+    /// Solver to measure; repeat it for several [default: all that are built].
     #[arg(long = "peer", value_name = "PEER")]
     pub peers: Vec<PeerKind>,
 
@@ -46,7 +46,7 @@ pub struct MeasureArgs {
     pub json: Option<PathBuf>,
 }
 
-/// What to draw.
+/// Figures to draw.
 #[derive(Args, Debug)]
 pub struct PlotArgs {
     /// JSON files with figures.
@@ -57,7 +57,7 @@ pub struct PlotArgs {
     #[arg(long, value_name = "FILE", default_value = "stretch.svg")]
     pub out: PathBuf,
 
-    /// Which scene's figures are drawn.
+    /// Scene whose figures are drawn.
     #[arg(long, value_name = "NAME", default_value = crate::scene::NAME)]
     pub scene: String,
 }

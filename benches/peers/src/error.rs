@@ -1,10 +1,10 @@
-//! What can go wrong.
+//! Errors.
 
 use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
-/// What can go wrong.
+/// An error of the benchmark.
 #[derive(Error, Debug)]
 pub enum Error {
     /// A file cannot be read.
@@ -30,7 +30,7 @@ pub enum Error {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// The cause, and its place.
         source: serde_json::Error,
     },
 
@@ -44,7 +44,7 @@ pub enum Error {
     NotBuilt {
         /// Its name.
         peer: &'static str,
-        /// What brings it.
+        /// Feature that brings it.
         feature: &'static str,
     },
 

@@ -9,7 +9,7 @@ use crate::error::Error;
 /// One measurement.
 #[derive(Serialize, Deserialize, Debug, Clone)]
 pub struct Record {
-    /// Who was measured.
+    /// Name of the solver.
     pub solver: String,
     /// On which scene.
     pub scene: String,

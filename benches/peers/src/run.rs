@@ -79,7 +79,7 @@ struct Diverged {
     step: usize,
 }
 
-/// How far the structural edges are stretched, max(0, l / L − 1) [-].
+/// Stretch of the structural edges, max(0, l / L − 1) [-].
 struct Stretch {
     mean: f64,
     p99: f64,

@@ -7,7 +7,7 @@
 pub const NAME: &str = "hang";
 /// Width and height of the sheet [m].
 pub const WIDTH: f32 = 2.0;
-/// Where the sheet starts [m].
+/// Height at which the sheet starts [m].
 pub const Y: f32 = 1.0;
 /// Mass per area [kg/m²].
 pub const AREAL_DENSITY: f32 = 0.15;
@@ -38,7 +38,7 @@ impl Sheet {
         self.size * self.size
     }
 
-    /// Where the particles are [m], row by row.
+    /// Positions of the particles [m], row by row.
     pub fn positions(self) -> impl Iterator<Item = [f32; 3]> {
         let at = move |k: usize| k as f32 * self.spacing() - WIDTH / 2.0;
         (0..self.particles()).map(move |i| [at(i % self.size), Y, at(i / self.size)])

@@ -24,7 +24,10 @@ use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
 use bevy_shape::Aabb3d;
 use bevy_transform::TransformSystems;
-use tailorbird_cloth::{prelude::*, topology::constraints::ConstraintFamily};
+use tailorbird_cloth::{
+    prelude::*,
+    topology::{constraints::ConstraintFamily, order::Stored},
+};
 
 /// Draws what a cloth consists of and what it collides with, as [`ClothGizmos`] says. Needs Bevy's `GizmoPlugin` (part of `DefaultPlugins`) to be
 /// added before; does nothing without.
@@ -129,7 +132,7 @@ fn draw(
             continue;
         }
         let at = |i: usize| particles.world_position(i, frame);
-        let stored = |i: usize| at(particles.order().given(i as u32) as usize);
+        let stored = |i: usize| at(particles.order().given(Stored(i as u32)).index());
         let size = (topology.areas().sum::<f32>() / particles.len() as f32).sqrt();
 
         for family in ConstraintFamily::ALL {

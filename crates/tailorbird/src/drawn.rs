@@ -2,7 +2,7 @@
 //!
 //! Cloth is drawn between its last two steps, and so up to a step late; a bone that is animated in each frame is drawn where it is
 //! now. A cape would be seen to lag behind its shoulders by as much. So whoever writes the mesh moves the particles that are
-//! attached rigidly to the places that their points have now, and those around them along, less and less with the way along
+//! attached rigidly to the places that their points have now, and those around them along, less and less with the distance along
 //! the sheet. The simulation knows nothing of it. Where all that holds it was put elsewhere since the last step, the whole cloth is drawn
 //! there.
 //!
@@ -13,7 +13,7 @@
 //! # use bevy_math::Vec3;
 //! # use bevy_transform::components::GlobalTransform;
 //! # use tailorbird::{drawn::ClothDrawnHolds, prelude::*};
-//! # use tailorbird_cloth::attachment::ClothAttachedParticles;
+//! # use tailorbird_cloth::{attachment::ClothAttachedParticles, topology::order::Stored};
 //! fn write_mesh(
 //!     mut cloths: Query<(
 //!         &GlobalTransform, &ClothTopology, &ClothParticles, &ClothAttachedParticles, &mut ClothDrawnHolds,
@@ -24,7 +24,7 @@
 //!     for (place, topology, particles, attached, mut drawn) in &mut cloths {
 //!         let now = |target| places.get(target).ok().copied();
 //!         drawn.update(topology, particles, attached, place, fraction, now);
-//!         for i in 0..particles.len() {
+//!         for i in (0..particles.len() as u32).map(Stored) {
 //!             let _drawn_at: Vec3 = particles.interpolated(i, fraction) + drawn.offset(i);
 //!         }
 //!     }
@@ -38,8 +38,13 @@ use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::GlobalTransform;
 use tailorbird_cloth::{
-    attachment::ClothAttachedParticles, frame::split_mirrored, particles::ClothParticles,
-    topology::Topology,
+    attachment::ClothAttachedParticles,
+    frame::split_mirrored,
+    particles::ClothParticles,
+    topology::{
+        Topology,
+        order::{Given, Stored},
+    },
 };
 use tailorbird_solver::points::Points;
 
@@ -65,8 +70,7 @@ pub struct ClothDrawnHolds {
 /// A particle that is drawn at a point of a target.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    /// Index in storage order.
-    particle: u32,
+    particle: Stored,
     target: u32,
     /// In the target's own space \[m\].
     point: Vec3,
@@ -75,8 +79,7 @@ struct Held {
 /// A free particle that moves along.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
-    /// Index in storage order.
-    particle: u32,
+    particle: Stored,
     target: u32,
     /// Random number from 0 to 1.
     weight: f32,
@@ -86,10 +89,10 @@ impl ClothDrawnHolds {
     /// Distance along the sheet within which particles move along, as a part of the side of a square of the cloth's area [-].
     pub const REACH: f32 = 0.6;
 
-    /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\]. `i` is in storage order, as in
-    /// [`Particles::interpolated`](tailorbird_solver::particles::Particles::interpolated).
+    /// By how much a particle is drawn elsewhere, in the cloth's frame \[m\].
     #[inline]
-    pub fn offset(&self, i: usize) -> Vec3 {
+    pub fn offset(&self, particle: Stored) -> Vec3 {
+        let i = particle.index();
         if i < self.offsets.len() {
             self.offsets.get(i)
         } else {
@@ -108,7 +111,7 @@ impl ClothDrawnHolds {
         self.offsets.is_empty()
     }
 
-    /// Computes the offsets of a cloth that is drawn at `place`, at a part of the way between the last two steps, 0 to 1.
+    /// Computes the offsets of a cloth that is drawn at `place`, at a part of the time between the last two steps, 0 to 1.
     /// `now` tells where a target is drawn. Targets and cloths that are nowhere move nothing.
     pub fn update(
         &mut self,
@@ -140,11 +143,11 @@ impl ClothDrawnHolds {
             };
             let held = self.held.iter().filter(|held| held.target == k as u32);
             for held in held {
-                let i = held.particle as usize;
+                let i = held.particle.index();
                 let world = transform.affine().transform_point3a(held.point.into());
                 let there = frame.rotation.inverse() * Vec3::from(world - frame.translation);
                 self.offsets
-                    .set(i, there - particles.interpolated(i, fraction));
+                    .set(i, there - particles.interpolated(held.particle, fraction));
             }
             self.motions[k] = attached.motion(*target, &transform, frame, fraction);
         }
@@ -154,8 +157,8 @@ impl ClothDrawnHolds {
         }
         for weight in &self.weights {
             if let Some(motion) = self.motions[weight.target as usize] {
-                let i = weight.particle as usize;
-                let from = particles.interpolated(i, fraction);
+                let from = particles.interpolated(weight.particle, fraction);
+                let i = weight.particle.index();
                 self.offsets.add(i, (motion * from - from) * weight.weight);
             }
         }
@@ -166,7 +169,7 @@ impl ClothDrawnHolds {
     fn all_leap(&self) -> bool {
         /// Further than anything runs in the time that cloth is late \[m\].
         const LEAP: f32 = 1.0;
-        let offset = |held: &Held| self.offsets.get(held.particle as usize);
+        let offset = |held: &Held| self.offsets.get(held.particle.index());
         self.motions.iter().all(Option::is_some)
             && self.held.iter().all(|held| offset(held).length() > LEAP)
     }
@@ -179,11 +182,11 @@ impl ClothDrawnHolds {
         let held: Vec<(usize, Vec3)> = self
             .held
             .iter()
-            .map(|held| held.particle as usize)
+            .map(|held| held.particle.index())
             .map(|i| (i, self.offsets.get(i)))
             .collect();
         for i in 0..particles.len() {
-            let from = particles.interpolated(i, fraction);
+            let from = particles.interpolated(Stored(i as u32), fraction);
             self.offsets.set(i, motion * from - from);
         }
         for (i, offset) in held {
@@ -208,7 +211,7 @@ impl ClothDrawnHolds {
                 self.targets.len() - 1
             });
             self.held.push(Held {
-                particle: particles.order().stored(point.particle),
+                particle: particles.order().stored(Given(point.particle)),
                 target: target as u32,
                 point: point.point,
             });
@@ -216,30 +219,30 @@ impl ClothDrawnHolds {
         let count = topology.particles();
         let area = topology.cell_area() * count as f32;
         let reach = Self::REACH * area.sqrt();
-        let ways: Vec<Vec<f32>> = (0..self.targets.len() as u32)
+        let lengths: Vec<Vec<f32>> = (0..self.targets.len() as u32)
             .map(|k| {
                 let held = self.held.iter().filter(|held| held.target == k);
-                ways(topology, held.map(|held| held.particle), reach)
+                path_lengths(topology, held.map(|held| held.particle), reach)
             })
             .collect();
         let mut fixed = vec![false; count];
         let pins = particles
             .pinned()
-            .map(|i| particles.order().stored(i as u32));
+            .map(|i| particles.order().stored(Given(i as u32)));
         for i in pins.chain(self.held.iter().map(|held| held.particle)) {
-            if let Some(fixed) = fixed.get_mut(i as usize) {
+            if let Some(fixed) = fixed.get_mut(i.index()) {
                 *fixed = true;
             }
         }
         for particle in (0..count).filter(|&i| !fixed[i]) {
-            let all: f32 = ways.iter().map(|way| way[particle].powi(-2)).sum();
-            for (k, way) in ways.iter().enumerate() {
-                let q = way[particle] / reach;
+            let all: f32 = lengths.iter().map(|to| to[particle].powi(-2)).sum();
+            for (k, to) in lengths.iter().enumerate() {
+                let q = to[particle] / reach;
                 if q < 1.0 {
                     // Between several targets the nearer one counts more; 1 at a target, 0 with no kink at the end.
-                    let share = way[particle].powi(-2) / all;
+                    let share = to[particle].powi(-2) / all;
                     self.weights.push(Weight {
-                        particle: particle as u32,
+                        particle: Stored(particle as u32),
                         target: k as u32,
                         weight: share * (1.0 - q * q) * (1.0 - q * q),
                     });
@@ -249,11 +252,11 @@ impl ClothDrawnHolds {
     }
 }
 
-/// A particle that a way leads to.
+/// A particle that a path leads to.
 #[derive(Clone, Copy, PartialEq)]
 struct Reached {
-    way: f32,
-    particle: u32,
+    path_length: f32,
+    particle: Stored,
 }
 
 impl Eq for Reached {}
@@ -261,8 +264,8 @@ impl Eq for Reached {}
 impl Ord for Reached {
     /// The nearest is the greatest.
     fn cmp(&self, other: &Self) -> Ordering {
-        let way = other.way.total_cmp(&self.way);
-        way.then(other.particle.cmp(&self.particle))
+        let nearest = other.path_length.total_cmp(&self.path_length);
+        nearest.then(other.particle.cmp(&self.particle))
     }
 }
 
@@ -273,28 +276,35 @@ impl PartialOrd for Reached {
 }
 
 /// Distance along edges and diagonals from the nearest of some particles to each one \[m\] (Dijkstra); infinite beyond `reach` \[m\].
-fn ways(topology: &Topology, from: impl Iterator<Item = u32>, reach: f32) -> Vec<f32> {
+fn path_lengths(topology: &Topology, from: impl Iterator<Item = Stored>, reach: f32) -> Vec<f32> {
     let rest = &topology.rest_positions;
-    let mut ways = vec![f32::INFINITY; rest.len()];
+    let mut lengths = vec![f32::INFINITY; rest.len()];
     let mut next = BinaryHeap::new();
-    for particle in from.filter(|&i| (i as usize) < rest.len()) {
-        ways[particle as usize] = 0.0;
-        next.push(Reached { way: 0.0, particle });
+    for particle in from.filter(|i| i.index() < rest.len()) {
+        lengths[particle.index()] = 0.0;
+        next.push(Reached {
+            path_length: 0.0,
+            particle,
+        });
     }
-    while let Some(Reached { way, particle }) = next.pop() {
-        if way > ways[particle as usize] {
+    while let Some(Reached {
+        path_length,
+        particle,
+    }) = next.pop()
+    {
+        if path_length > lengths[particle.index()] {
             continue;
         }
         for &to in topology.neighbors(particle).iter() {
-            let further = way + rest[to as usize].distance(rest[particle as usize]);
-            if further < ways[to as usize] && further < reach {
-                ways[to as usize] = further;
+            let further = path_length + rest[to.index()].distance(rest[particle.index()]);
+            if further < lengths[to.index()] && further < reach {
+                lengths[to.index()] = further;
                 next.push(Reached {
-                    way: further,
+                    path_length: further,
                     particle: to,
                 });
             }
         }
     }
-    ways
+    lengths
 }

@@ -32,7 +32,7 @@ pub(crate) struct PushedBody {
     sleeps: Has<Sleeping>,
 }
 
-/// Gives bodies the impulses and the ways that cloth gave them, and wakes those that it really pushes.
+/// Gives bodies the impulses and the displacements that cloth gave them, and wakes those that it really pushes.
 pub(crate) fn apply_reactions(
     time: Res<Time>,
     time_to_sleep: Option<Res<TimeToSleep>>,

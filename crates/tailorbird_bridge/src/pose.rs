@@ -16,8 +16,8 @@ impl TrackedPose {
     pub fn set(&mut self, pose: Isometry3d, seconds: f32, speed: f32) {
         let finite = pose.translation.is_finite() && pose.rotation.is_finite();
         if finite && let Some(start) = self.pose {
-            let way = Vec3::from(pose.translation - start.translation);
-            self.hops.is_hop(way, seconds, speed);
+            let displacement = Vec3::from(pose.translation - start.translation);
+            self.hops.is_hop(displacement, seconds, speed);
         }
         self.pose = finite.then_some(pose);
     }
@@ -29,9 +29,9 @@ impl TrackedPose {
         let Some(start) = self.pose else {
             return end;
         };
-        let way = Vec3::from(end.translation - start.translation);
+        let displacement = Vec3::from(end.translation - start.translation);
         let mut hops = self.hops;
-        if hops.is_hop(way, seconds, speed) {
+        if hops.is_hop(displacement, seconds, speed) {
             let moved = hops.velocity() * seconds;
             return Isometry3d::new(Vec3::from(end.translation) - moved, end.rotation);
         }

@@ -54,8 +54,8 @@ fn rest(world: &mut World, sheet: Entity, ball: Entity) -> Rest {
         impulse += world.reaction(ball).map_or(Vec3::ZERO, |r| r.impulse);
         speed = speed.max(world.motion(ball).center.distance(from) * HZ as f32);
         let now = world.points(sheet);
-        let ways = now.iter().zip(&points).map(|(a, b)| a.distance_squared(*b));
-        squares += ways.sum::<f32>() / (now.len() as f32 * HZ as f32);
+        let squares_of_distances = now.iter().zip(&points).map(|(a, b)| a.distance_squared(*b));
+        squares += squares_of_distances.sum::<f32>() / (now.len() as f32 * HZ as f32);
         points = now;
     }
     // The pinned particles hang at nothing but their pins.
@@ -168,16 +168,16 @@ fn a_ball_off_the_middle_comes_to_rest() {
         let from = world.motion(ball).center;
         let rest = rest(&mut world, sheet, ball);
         let motion = world.motion(ball);
-        let way = from.distance(motion.center);
+        let distance = from.distance(motion.center);
         println!(
-            "{mass} kg at {:.3}: moved {way:.5} m, at most {:.4} m/s, said {:.4} m/s, force {:.3} N, trembling {:.3} mm",
+            "{mass} kg at {:.3}: moved {distance:.5} m, at most {:.4} m/s, said {:.4} m/s, force {:.3} N, trembling {:.3} mm",
             motion.center,
             rest.speed,
             motion.velocity,
             rest.force,
             1e3 * rest.trembling
         );
-        assert!(way < 2e-3, "{mass} kg rolls: {way} m in a second");
+        assert!(distance < 2e-3, "{mass} kg rolls: {distance} m in a second");
         assert!(rest.speed < 0.01, "{mass} kg: {} m/s", rest.speed);
         // Damping takes some of what gravity gave in the last step.
         assert!(motion.velocity.length() < 0.05, "{motion:?}");

@@ -27,9 +27,9 @@ fn falls(contact: Contact, layers: Option<ClothLayers>) -> f32 {
 #[test]
 fn layers_sensors_and_the_marker_opt_out() {
     let free = 0.5 * G;
-    let stopped = |way: f32| (0.18..0.21).contains(&way);
+    let stopped = |distance: f32| (0.18..0.21).contains(&distance);
     // The material's damping takes a part.
-    let through = |way: f32| way > 0.8 * free;
+    let through = |distance: f32| distance > 0.8 * free;
     let cloth = |memberships, filters| Some(ClothLayers::new(memberships, filters));
     assert!(stopped(falls(Contact::Yes, None)));
     assert!(through(falls(Contact::Sensor, None)));

@@ -110,12 +110,12 @@ fn a_moving_box_takes_cloth_along() {
         );
     }
     let moved = (mean(&world) - before).x;
-    let way = world.motion(table).position.x;
-    println!("moved {moved:.3} m with a box that went {way:.3} m");
-    assert!((way - 2.0).abs() < 0.05, "{way}");
+    let distance = world.motion(table).position.x;
+    println!("moved {moved:.3} m with a box that went {distance:.3} m");
+    assert!((distance - 2.0).abs() < 0.05, "{distance}");
     assert!(
-        (0.9 * way..1.1 * way).contains(&moved),
-        "{moved} of {way} m"
+        (0.9 * distance..1.1 * distance).contains(&moved),
+        "{moved} of {distance} m"
     );
     assert_eq!(world.complaint(sheet), None);
 }

@@ -7,7 +7,11 @@ use std::{
 
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_solver::{particles::Particles, points::Points, topology::Topology};
+use tailorbird_solver::{
+    particles::Particles,
+    points::Points,
+    topology::{Topology, order::Stored},
+};
 use tracing::warn;
 
 use crate::{
@@ -123,24 +127,24 @@ impl ClothParticles {
             return false;
         }
         let about = if !self.0.input.held.any_in_frame() {
-            let at = |i: u32| self.0.state.position.get(i as usize);
-            let held = || attached.particles().filter(|i| (*i as usize) < count);
+            let at = |i: Stored| self.0.state.position.get(i.index());
+            let held = || attached.particles().filter(|i| i.index() < count);
             if held().next().is_some() {
                 held().map(at).sum::<Vec3>() / held().count() as f32
             } else {
-                (0..count as u32).map(at).sum::<Vec3>() / count as f32
+                (0..count as u32).map(Stored).map(at).sum::<Vec3>() / count as f32
             }
         } else {
             Vec3::ZERO
         };
         // Threads of a mesh may be found in another order at another scale.
         let moved = |i: u32| {
-            let given = new.order.given(i);
+            let given = new.order.given(Stored(i));
             (new.order.stored(given), self.order.stored(given))
         };
         let same = (0..count as u32).all(|i| moved(i).0 == moved(i).1);
         let grown = |points: &Points| -> Points {
-            let from = (0..count as u32).map(|i| moved(i).1 as usize);
+            let from = (0..count as u32).map(|i| moved(i).1.index());
             from.map(|i| about + ratio * (points.get(i) - about))
                 .collect()
         };
@@ -160,7 +164,7 @@ impl ClothParticles {
         self.0.state.lost_displacement.fill(Vec3::ZERO);
         self.0.state.grown_about = about;
         self.0.input.held.scale(ratio);
-        self.0.state.calm.clear();
+        self.0.state.mean_position.clear();
         self.0.state.grant.rescale();
         true
     }

@@ -73,7 +73,7 @@ impl ClothFrame {
         self.scale
     }
 
-    /// The entity is put elsewhere, and its cloth with it: whatever way the entity goes until the next step, the cloth does not
+    /// The entity is put elsewhere, and its cloth with it: wherever the entity goes until the next step, the cloth does not
     /// feel it. So with its parents, and with whatever else hangs on those.
     /// [`ClothTeleported`](crate::inertia::ClothTeleported) tells when that is done. What holds the cloth without being a parent is told by
     /// [`ClothSampledMotion::teleport`](crate::sampling::ClothSampledMotion::teleport).
@@ -135,15 +135,15 @@ impl ClothFrame {
             let turn = self.frame.start.rotation * seen.rotation.inverse();
             // What is carried has its velocity all the same.
             let began = if self.carries { from } else { self.frame.start };
-            let way = Vec3::from(to.translation - began.translation);
-            let (excess, velocity) = excess(turn * self.velocity, way, world_seconds);
+            let displacement = Vec3::from(to.translation - began.translation);
+            let (excess, velocity) = excess(turn * self.velocity, displacement, world_seconds);
             let holds = holds && !self.carries;
             self.velocity = if asked.is_some() || far {
                 turn * self.velocity
             } else if holds {
                 velocity
             } else {
-                way / world_seconds
+                displacement / world_seconds
             };
             if holds && self.frame.start != to {
                 self.frame.start.translation += Vec3A::from(excess);

@@ -15,7 +15,7 @@
 //!     Cloth::grid(Vec2::new(0.8, 1.2), UVec2::new(32, 48)),
 //!     ClothPins::edges([ClothEdge::Top]),
 //!     ClothInertia {
-//!         // Half of the way and of the turns, and nothing beyond a fast run.
+//!         // Half of the displacement and of the turns, and nothing beyond a fast run.
 //!         linear: 0.5,
 //!         angular: 0.5,
 //!         max_speed: 8.0,
@@ -63,7 +63,7 @@ use crate::error::ClothErrorKind;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default, deny_unknown_fields))]
 pub struct ClothInertia {
-    /// Part of the entity's way that is felt, 0 to 1 [-]. 0 is a cloth that does not notice that its entity moves.
+    /// Part of the entity's displacement that is felt, 0 to 1 [-]. 0 is a cloth that does not notice that its entity moves.
     pub linear: f32,
     /// Part of the entity's turning that is felt, 0 to 1 [-].
     pub angular: f32,
@@ -186,8 +186,8 @@ impl ClothInertia {
 
     /// Returns whether an entity that goes from one place to another in a step of this length \[s\] is put elsewhere.
     pub(crate) fn is_teleport(&self, from: Isometry3d, to: Isometry3d, seconds: f32) -> bool {
-        let way = from.translation.distance(to.translation);
-        way > self.teleport_speed * seconds
+        let distance = from.translation.distance(to.translation);
+        distance > self.teleport_speed * seconds
             || from.rotation.angle_between(to.rotation) > self.teleport_angle
     }
 
@@ -206,7 +206,7 @@ impl ClothInertia {
                 felt
             }
         };
-        let way = from.translation.distance(to.translation);
+        let distance = from.translation.distance(to.translation);
         let axis = shortest(to.rotation * from.rotation.inverse()).to_scaled_axis();
         let angular = part(self.angular, axis.length(), self.max_angular_speed);
         let carried = if seconds > 0.0 {
@@ -215,7 +215,7 @@ impl ClothInertia {
             Vec3::ZERO
         };
         Felt {
-            linear: part(self.linear, way, self.max_speed),
+            linear: part(self.linear, distance, self.max_speed),
             angular,
             spin: self.centrifugal.sqrt() * carried,
         }

@@ -7,7 +7,7 @@ mod apply;
 use bevy_ecs::prelude::*;
 use bevy_math::{UVec2, Vec3};
 use bevy_reflect::prelude::*;
-use tailorbird_solver::topology::Topology;
+use tailorbird_solver::topology::{Topology, order::Given};
 
 pub use apply::apply_pins;
 
@@ -292,7 +292,7 @@ impl ClothSelection {
                     return Err(error);
                 }
                 let inside = |p: &Vec3| p.distance_squared(center) <= radius * radius;
-                let place = |i| topology.rest_positions[topology.order.stored(i) as usize];
+                let place = |i| topology.rest_positions[topology.order.stored(Given(i)).index()];
                 (0..particles as u32)
                     .filter(|&i| inside(&place(i)))
                     .collect()

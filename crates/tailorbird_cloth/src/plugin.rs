@@ -38,7 +38,7 @@ use crate::{
     schedule::{Prepare, Simulate, Writeback, run_part, run_substeps},
     sleep::{carry_unseen, rest_cloths, rest_unseen, settle_cloths, wake_cloths},
     slow_build::warn_of_slow_build,
-    solver::{calm_knots, solve_constraints, verlet_step},
+    solver::{damp_tangles, solve_constraints, verlet_step},
     step::{begin_cloths, begin_step, plan_substeps, step_is_whole, step_runs},
     tethers::build_tethers,
     validate::guard_finite,
@@ -70,7 +70,7 @@ impl Default for ClothPlugin {
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
         register_types(app);
-        look_at_motion(app);
+        add_sampling(app);
         app.init_resource::<ClothSettings>()
             .init_resource::<ClothStep>()
             .init_resource::<ClothStepTime>()
@@ -197,7 +197,7 @@ impl Plugin for ClothPlugin {
                         collide_capsule,
                         collide_cuboid,
                         collide_shape,
-                        calm_knots,
+                        damp_tangles,
                     )
                         .chain()
                         .in_set(ClothSubstepSystems::Collide),
@@ -209,7 +209,7 @@ impl Plugin for ClothPlugin {
 }
 
 /// Notes in each frame, and at both ends of each step of the fixed loop, where things are.
-fn look_at_motion(app: &mut App) {
+fn add_sampling(app: &mut App) {
     app.init_resource::<ClothFrameClock>()
         .add_message::<ClothMotionTeleported>()
         .add_systems(

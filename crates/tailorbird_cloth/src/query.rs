@@ -2,7 +2,7 @@
 
 use bevy_math::Vec3;
 use bevy_shape::Ray3d;
-use tailorbird_solver::topology::Topology;
+use tailorbird_solver::topology::{Topology, order::Stored};
 
 use crate::{bounds::ClothBounds, particles::ClothParticles};
 
@@ -55,7 +55,7 @@ impl ClothParticles {
         Some(ClothHit {
             triangle,
             barycentric,
-            particle: self.order.given(particle as u32) as usize,
+            particle: self.order.given(Stored(particle as u32)).index(),
             point,
             normal: if normal.dot(*ray.direction) > 0.0 {
                 -normal

@@ -48,9 +48,12 @@ pub struct ClothStages {
 
 impl ClothStagesItem<'_, '_> {
     /// Calls `f` with the cloth as the solver has it.
-    pub(crate) fn with_cloth<R>(&mut self, f: impl FnOnce(&mut solver::cloth::Cloth) -> R) -> R {
+    pub(crate) fn with_cloth<R>(
+        &mut self,
+        f: impl FnOnce(&mut solver::cloth::ClothData) -> R,
+    ) -> R {
         let coefficients = self.material.coefficients();
-        f(&mut solver::cloth::Cloth {
+        f(&mut solver::cloth::ClothData {
             topology: self.topology,
             coefficients: &coefficients,
             method: self.solver.method(),

@@ -59,6 +59,7 @@ use tailorbird_solver::{
     contact::colliders::combined_friction,
     kernels::contact::Path,
     particles::{Input, Particles, Scratch, State},
+    topology::order::Given,
 };
 
 use crate::{
@@ -208,7 +209,7 @@ impl<'w> SubstepCloth<'w> {
     }
 
     fn stored(&self, i: usize) -> usize {
-        self.particles.order.stored(i as u32) as usize
+        self.particles.order.stored(Given(i as u32)).index()
     }
 
     /// 1/mass of a particle [1/kg]; 0 where it is held.

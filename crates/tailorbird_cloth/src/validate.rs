@@ -66,7 +66,7 @@ impl ClothStagesItem<'_, '_> {
         let Some(particle) = non_finite else {
             return;
         };
-        let particle = self.particles.order.given(particle) as usize;
+        let particle = self.particles.order.given(particle).index();
         self.particles.0.reset_to_step_start();
         let (entity, status) = (self.entity, &mut self.status);
         let error = ClothErrorKind::NonFiniteState { particle };

@@ -59,9 +59,9 @@ fn what_is_not_felt_carries_along() {
     for path in [run, turn] {
         let mut moved = with(&curtain(), ClothInertia::none());
         drive(&mut moved, 90, path);
-        let way = furthest(&still.positions(), &moved.positions());
-        println!("{way:e} m");
-        assert!(way < 1e-6, "{way} m");
+        let distance = furthest(&still.positions(), &moved.positions());
+        println!("{distance:e} m");
+        assert!(distance < 1e-6, "{distance} m");
     }
     let mut felt = Sheet::new(&curtain());
     drive(&mut felt, 90, run);
@@ -80,9 +80,12 @@ fn a_part_of_the_way_is_felt() {
         );
         let before = sheet.world_positions();
         drive(&mut sheet, 60, |t| Transform::from_xyz(3.0 * t, 0.0, 0.0));
-        let way = sheet.world_positions()[100] - before[100];
+        let displacement = sheet.world_positions()[100] - before[100];
         let expected = Vec3::X * 3.0 * (1.0 - part);
-        assert!(way.distance(expected) < 1e-3, "{part}: {way}");
+        assert!(
+            displacement.distance(expected) < 1e-3,
+            "{part}: {displacement}"
+        );
         // It got there without velocity of its own.
         let speed = sheet.fastest();
         // Rounding of places of up to a metre, in an eighth of a step.
@@ -91,7 +94,7 @@ fn a_part_of_the_way_is_felt() {
 }
 
 #[test]
-fn a_turn_that_carries_along_flings() {
+fn a_turn_that_carries_along_throws_outwards() {
     let omega = 6.0;
     for centrifugal in [0.0, 0.5, 1.0] {
         let mut sheet = with(
@@ -109,9 +112,9 @@ fn a_turn_that_carries_along_flings() {
         let steps = 6;
         drive(&mut sheet, steps, turn);
         let time = steps as f32 * DT;
-        let way = sheet.positions()[7 * 16] - before;
+        let displacement = sheet.positions()[7 * 16] - before;
         let expected = 0.5 * centrifugal * omega * omega * time * time * before.x.abs();
-        let outward = way.dot(before.with_y(0.0).normalize());
+        let outward = displacement.dot(before.with_y(0.0).normalize());
         println!("{centrifugal}: {outward} of {expected} m");
         assert!((outward - expected).abs() < 0.05 * expected + 1e-5);
     }
@@ -129,8 +132,8 @@ fn no_faster_than_the_limit() {
         drive(&mut sheet, 60, |t| Transform::from_xyz(speed * t, 0.0, 0.0));
         sheet.positions()
     };
-    let way = furthest(&at(20.0, 4.0), &at(4.0, f32::INFINITY));
-    assert!(way < 1e-6, "{way} m");
+    let distance = furthest(&at(20.0, 4.0), &at(4.0, f32::INFINITY));
+    assert!(distance < 1e-6, "{distance} m");
 
     let spun = |speed: f32, limit: f32| {
         let inertia = ClothInertia {
@@ -144,8 +147,8 @@ fn no_faster_than_the_limit() {
         });
         sheet.positions()
     };
-    let way = furthest(&spun(12.0, 2.0), &spun(2.0, f32::INFINITY));
-    assert!(way < 2e-4, "{way} m");
+    let distance = furthest(&spun(12.0, 2.0), &spun(2.0, f32::INFINITY));
+    assert!(distance < 2e-4, "{distance} m");
 }
 
 /// Teleports that were told.
@@ -202,9 +205,9 @@ fn a_teleported_cloth_is_reset_where_that_is_asked_for() {
     sheet.steps(20);
     sheet.change(far);
     sheet.step();
-    let way = furthest(&rest, &sheet.positions());
+    let distance = furthest(&rest, &sheet.positions());
     // It has fallen for one step since.
-    assert!(way < G * DT * DT, "{way} m");
+    assert!(distance < G * DT * DT, "{distance} m");
     assert_eq!(told(&sheet), [ClothTeleportMode::Reset]);
 }
 
@@ -273,10 +276,10 @@ fn a_body_that_is_carried_along_does_not_sweep_the_cloth_up() {
         move_sphere(&mut moved, at);
         moved.step();
     }
-    let way = furthest(&still.positions(), &moved.positions());
-    println!("{way} m");
+    let distance = furthest(&still.positions(), &moved.positions());
+    println!("{distance} m");
     // Rounding grows where a sheet lies on a sphere; a swept one is off by decimetres.
-    assert!(way < 3e-4, "{way} m");
+    assert!(distance < 3e-4, "{distance} m");
 }
 
 #[test]
@@ -293,9 +296,9 @@ fn a_body_that_is_teleported_with_the_cloth_does_not_sweep_it_up() {
     moved.change(|t: &mut Transform| *t = at);
     move_sphere(&mut moved, at);
     moved.step();
-    let way = furthest(&before, &moved.positions());
+    let distance = furthest(&before, &moved.positions());
     let speed = moved.fastest();
-    assert!(way < 0.012 && speed < 0.8, "{way} m, {speed} m/s");
+    assert!(distance < 0.012 && speed < 0.8, "{distance} m, {speed} m/s");
     moved.steps(30);
     assert!(moved.stretch().p99 < 0.004);
 }
@@ -350,11 +353,11 @@ fn a_hundred_kilometres_away_everything_is_the_same() {
         }
         sheet.positions()
     };
-    let way = furthest(
+    let distance = furthest(
         &run(Vec3::ZERO),
         &run(Vec3::new(100_000.0, 0.0, -100_000.0)),
     );
-    assert_eq!(way, 0.0);
+    assert_eq!(distance, 0.0);
 }
 
 #[test]

@@ -95,8 +95,8 @@ fn waking_is_no_snap() {
     for _ in 0..30 {
         sheet.step();
         assert!(!sheet.is_asleep());
-        let way = furthest(&sheet.positions(), &before);
-        assert!(way < 1e-3, "{way} m");
+        let distance = furthest(&sheet.positions(), &before);
+        assert!(distance < 1e-3, "{distance} m");
     }
 }
 
@@ -257,11 +257,11 @@ fn lies_still(n: u32) {
         for _ in 0..60 {
             let before = sheet.positions();
             sheet.step();
-            let ways = sheet.particles().positions().zip(&before);
-            for (to, from) in ways {
-                let way = to.distance(*from) * 60.0;
-                squares += way * way / (60 * before.len()) as f32;
-                most = most.max(way);
+            let pairs = sheet.particles().positions().zip(&before);
+            for (to, from) in pairs {
+                let speed = to.distance(*from) * 60.0;
+                squares += speed * speed / (60 * before.len()) as f32;
+                most = most.max(speed);
             }
         }
         let rms = squares.sqrt();

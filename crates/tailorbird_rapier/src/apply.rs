@@ -23,7 +23,7 @@ use crate::collect::{inverse_mass, pose};
 /// another place awake, be it a micrometre further, and so a crate under a tablecloth would never sleep.
 const STILL: f32 = 0.2;
 
-/// Gives bodies the impulses and the ways that cloth gave them, wakes those that it really pushes, and notes where colliders are
+/// Gives bodies the impulses and the displacements that cloth gave them, wakes those that it really pushes, and notes where colliders are
 /// then.
 pub(crate) fn apply_reactions(
     time: Res<Time>,

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// A cloth in a step: data that its stages read and write.
-pub struct Cloth<'a> {
+pub struct ClothData<'a> {
     /// Topology, computed once from the rest shape.
     pub topology: &'a Topology,
     /// Coefficients of the material.

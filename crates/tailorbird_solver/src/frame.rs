@@ -133,7 +133,7 @@ impl Frame {
 
     /// Path during a substep, in the frame as it is, of an object that moves through the world from `start` to `end` in this step. It
     /// begins as far from the particles as the object then was.
-    pub fn way_to_frame(
+    pub fn path_in_frame(
         &self,
         start: Isometry3d,
         end: Isometry3d,
@@ -142,14 +142,14 @@ impl Frame {
         let start = self.start_of(start, end);
         // Differences first: they are exact where coordinates are large.
         let first = Vec3::from(start.translation - self.start.translation);
-        let way = Vec3::from(end.translation - start.translation);
+        let displacement = Vec3::from(end.translation - start.translation);
         let at = |fraction: f32| {
             let rotation = if start.rotation == end.rotation {
                 end.rotation
             } else {
                 start.rotation.slerp(end.rotation, fraction)
             };
-            (rotation, first + fraction * way)
+            (rotation, first + fraction * displacement)
         };
         let into = |(turn, offset): (Quat, Vec3), (rotation, place): (Quat, Vec3)| {
             let inverse = turn.inverse();

@@ -12,20 +12,20 @@ impl Particles {
         let Some((held, target)) = self.input.held.in_hand() else {
             return;
         };
-        let i = held as usize;
+        let i = held.index();
         let from = self.state.position.get(i);
         let mut hand = from + (target - from) / left as f32;
         // Projects onto the balls around the neighbours in turn; two rounds are enough for the neighbours in a sheet.
-        for &neighbor in topology.neighbors(held).iter().cycle().take(16) {
+        for neighbor in topology.neighbors(held).iter().cycle().take(16) {
             let rest =
-                topology.rest_positions[i].distance(topology.rest_positions[neighbor as usize]);
-            let anchor = self.state.position.get(neighbor as usize);
+                topology.rest_positions[i].distance(topology.rest_positions[neighbor.index()]);
+            let anchor = self.state.position.get(neighbor.index());
             hand = anchor + (hand - anchor).clamp_length_max(MOST_STRETCH * rest);
         }
         self.state.position.set(i, hand);
         // A part 1 − w of the displacement is left after a sixtieth of a second, whatever the number of substeps.
         for pulled in &self.input.pulled {
-            let i = pulled.particle as usize;
+            let i = pulled.particle.index();
             if self.input.inv_mass[i] == 0.0 {
                 continue;
             }

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use bevy_math::Vec3;
 
-use crate::memory::heap;
+use crate::{memory::heap, topology::order::Stored};
 
 /// A particle that is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// In storage order.
-    pub particle: u32,
+    /// Particle that is held.
+    pub particle: Stored,
     /// Its holder.
     pub by: HeldBy,
 }
@@ -59,12 +59,12 @@ pub struct HeldParticles(Vec<Held>);
 
 impl HeldParticles {
     /// All particles of the list.
-    pub fn particles(&self) -> impl Iterator<Item = u32> + Clone + '_ {
+    pub fn particles(&self) -> impl Iterator<Item = Stored> + Clone + '_ {
         self.0.iter().map(|held| held.particle)
     }
 
     /// Particles that are kinematic wherever they go: all but the one in a hand.
-    pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
+    pub fn anchors(&self) -> impl Iterator<Item = Stored> + Clone + '_ {
         let end = self.range(HolderKind::Hand).start;
         self.0[..end].iter().map(|held| held.particle)
     }
@@ -75,7 +75,7 @@ impl HeldParticles {
     }
 
     /// The pinned ones, with their places in the cloth's frame \[m\].
-    pub fn pins(&self) -> impl ExactSizeIterator<Item = (u32, Vec3)> + '_ {
+    pub fn pins(&self) -> impl ExactSizeIterator<Item = (Stored, Vec3)> + '_ {
         let place = |held: &Held| match held.by {
             HeldBy::Pin(at) | HeldBy::Hand(at) => at,
             HeldBy::Attachment | HeldBy::Limit => Vec3::ZERO,
@@ -91,7 +91,7 @@ impl HeldParticles {
     }
 
     /// The one in a hand, and where that moves it to in the cloth's frame \[m\].
-    pub fn in_hand(&self) -> Option<(u32, Vec3)> {
+    pub fn in_hand(&self) -> Option<(Stored, Vec3)> {
         self.0.last().and_then(|held| match held.by {
             HeldBy::Hand(to) => Some((held.particle, to)),
             _ => None,
@@ -149,7 +149,10 @@ mod tests {
     use super::*;
 
     fn held(particle: u32, by: HeldBy) -> Held {
-        Held { particle, by }
+        Held {
+            particle: Stored(particle),
+            by,
+        }
     }
 
     #[test]
@@ -164,26 +167,29 @@ mod tests {
             HolderKind::Attachment,
             [attached(1), attached(2), attached(7)]
         ));
-        assert!(all.particles().eq([3, 5, 1, 2, 7, 9]));
-        assert!(all.anchors().eq([3, 5, 1, 2, 7]) && all.any_in_frame());
+        assert!(all.particles().eq([3, 5, 1, 2, 7, 9].map(Stored)));
+        assert!(all.anchors().eq([3, 5, 1, 2, 7].map(Stored)) && all.any_in_frame());
         assert!(!all.replace(
             HolderKind::Attachment,
             [attached(1), attached(2), attached(7)]
         ));
         assert!(all.replace(HolderKind::Attachment, [attached(1), attached(4)]));
         assert!(all.replace(HolderKind::Pin, [pin(3), pin(4), pin(6)]));
-        assert!(all.particles().eq([3, 4, 6, 1, 4, 9]));
-        assert!(all.pins().eq([3, 4, 6].map(|i| (i, Vec3::splat(i as f32)))));
-        assert_eq!(all.in_hand(), Some((9, Vec3::Y)));
+        assert!(all.particles().eq([3, 4, 6, 1, 4, 9].map(Stored)));
+        assert!(
+            all.pins()
+                .eq([3, 4, 6].map(|i| (Stored(i), Vec3::splat(i as f32))))
+        );
+        assert_eq!(all.in_hand(), Some((Stored(9), Vec3::Y)));
         all.scale(Vec3::splat(2.0));
         assert!(
             all.pins()
-                .eq([3, 4, 6].map(|i| (i, Vec3::splat(2.0 * i as f32))))
+                .eq([3, 4, 6].map(|i| (Stored(i), Vec3::splat(2.0 * i as f32))))
         );
         assert!(all.replace(HolderKind::Hand, []));
         assert!(all.replace(HolderKind::Pin, []));
         assert_eq!(all.in_hand(), None);
-        assert!(all.particles().eq([1, 4]));
+        assert!(all.particles().eq([1, 4].map(Stored)));
         assert!(all.of(HolderKind::Limit).is_empty() && !all.any_in_frame());
     }
 }

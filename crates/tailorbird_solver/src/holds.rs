@@ -11,7 +11,7 @@ use crate::{
     particles::Particles,
     pose::{Map, Pose},
     substep::Substep,
-    topology::order::ParticleOrder,
+    topology::order::{ParticleOrder, Stored},
 };
 
 /// Particles of a cloth that attachments hold, and their points.
@@ -55,8 +55,7 @@ pub struct Holder {
 /// A particle at a point of an attachment.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold {
-    /// Index in storage order.
-    pub particle: u32,
+    pub particle: Stored,
     /// Index in the list of bodies.
     pub body: u32,
     /// Point in the entity's own space \[m\].
@@ -102,8 +101,8 @@ impl Holds {
         self.bodies.is_empty()
     }
 
-    /// All particles that are held, in storage order.
-    pub fn particles(&self) -> impl Iterator<Item = u32> + '_ {
+    /// All particles that are held.
+    pub fn particles(&self) -> impl Iterator<Item = Stored> + '_ {
         let springs = self.springs.iter().map(|spring| &spring.hold);
         self.rigid.iter().chain(springs).map(|hold| hold.particle)
     }
@@ -116,7 +115,7 @@ impl Holds {
             .chain(self.springs.iter().map(|spring| &spring.hold));
         let holds = holds.flat_map(|hold| {
             let [x, y, z] = hold.point.to_array().map(f32::to_bits);
-            [hold.particle, hold.body, x, y, z]
+            [hold.particle.0, hold.body, x, y, z]
         });
         let ids = self
             .bodies
@@ -158,17 +157,22 @@ impl Holds {
     }
 
     /// Adds an attachment; without compliance, later ones take particles from earlier ones.
-    pub fn add(&mut self, body: Holder, points: &[(u32, Vec3)], compliances: Option<&[f32]>) {
-        let hold = |&(particle, point): &(u32, Vec3)| Hold {
+    pub fn add(
+        &mut self,
+        body: Holder,
+        points: impl Iterator<Item = (Stored, Vec3)>,
+        compliances: Option<&[f32]>,
+    ) {
+        let hold = |(particle, point)| Hold {
             particle,
             body: self.bodies.len() as u32,
             point,
             gap: [Vec3::ZERO; 2],
         };
         match compliances {
-            None => self.rigid.extend(points.iter().map(hold)),
+            None => self.rigid.extend(points.map(hold)),
             Some(compliances) => {
-                let springs = points.iter().zip(compliances);
+                let springs = points.zip(compliances);
                 self.springs
                     .extend(springs.map(|(at, c)| Spring::new(hold(at), *c)));
             }
@@ -181,7 +185,7 @@ impl Holds {
     pub fn finish(&mut self, frame: &Frame, particles: &mut Particles, seconds: f32) -> bool {
         self.order = particles.order.clone();
         self.rigid
-            .retain(|hold| !particles.is_pinned(self.order.given(hold.particle) as usize));
+            .retain(|hold| !particles.is_pinned(self.order.given(hold.particle).index()));
         self.rigid
             .sort_unstable_by_key(|hold| (hold.particle, u32::MAX - hold.body));
         self.rigid.dedup_by_key(|hold| hold.particle);
@@ -192,7 +196,7 @@ impl Holds {
             by: HeldBy::Attachment,
         });
         let changed = particles.hold(HolderKind::Attachment, attached);
-        let at = |hold: &Hold| particles.state.position.get(hold.particle as usize);
+        let at = |hold: &Hold| particles.state.position.get(hold.particle.index());
         let mut furthest = 0.0f32;
         let springs = self
             .springs
@@ -246,7 +250,7 @@ impl Holds {
                         .1
                 }
             };
-            let i = hold.particle as usize;
+            let i = hold.particle.index();
             if i >= particles.len() {
                 continue;
             }
@@ -272,7 +276,7 @@ impl Holds {
                         .1
                 }
             };
-            let i = hold.particle as usize;
+            let i = hold.particle.index();
             let Some(&inv_mass) = particles.input.inv_mass.get(i) else {
                 continue;
             };
@@ -293,7 +297,7 @@ impl Holds {
     pub fn measure(&mut self, frame: &Frame, particles: &mut Particles) -> Vec3 {
         let mut all = Vec3::ZERO;
         for spring in self.springs.iter().rev() {
-            let i = spring.hold.particle as usize;
+            let i = spring.hold.particle.index();
             if i < particles.len() && spring.inv_mass > 0.0 {
                 let force = (particles.state.position.get(i) - spring.anchor) / spring.compliance;
                 self.bodies[spring.hold.body as usize].pulled += frame.vector_to_world(force);

@@ -49,7 +49,7 @@ impl MotionLimits {
         } = particles;
         let left = substep.left() as f32;
         for limited in held.of(HolderKind::Limit) {
-            let i = limited.particle as usize;
+            let i = limited.particle.index();
             if i < self.targets[1].len() {
                 let (from, to) = (position.get(i), self.targets[1].get(i));
                 let next = if left > 1.0 {

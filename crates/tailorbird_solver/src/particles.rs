@@ -15,7 +15,10 @@ use crate::{
     memory::heap,
     numbers::Numbers,
     points::Points,
-    topology::{Topology, order::ParticleOrder},
+    topology::{
+        Topology,
+        order::{Given, ParticleOrder, Stored},
+    },
 };
 
 /// The particles of one cloth, as parallel arrays in storage order, in the cloth's frame.
@@ -53,7 +56,7 @@ pub struct State {
     /// Additional length that the threads of a strained cloth are granted.
     pub grant: Grant,
     /// Mean positions of blocks of 16 particles over the last quarter of a second \[m\].
-    pub calm: Vec<Vec3>,
+    pub mean_position: Vec<Vec3>,
     /// The point that stayed where it was when the scale changed last \[m\].
     pub grown_about: Vec3,
     /// Contact planes of meshes, which hold the side of an open mesh that each particle is on.
@@ -101,11 +104,11 @@ pub struct Scratch {
 /// A particle that is pulled along with the grabbed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pulled {
-    /// In storage order.
-    pub particle: u32,
+    /// Particle that is pulled.
+    pub particle: Stored,
     /// From the grabbed particle to where this one is pulled, in the cloth's frame \[m\].
     pub offset: Vec3,
-    /// Part of the way there that is gone in a sixtieth of a second, 0 to 1.
+    /// Part of the distance there that is gone in a sixtieth of a second, 0 to 1.
     pub weight: f32,
 }
 
@@ -170,7 +173,7 @@ impl Particles {
                 .iter()
                 .map(MeshPlanes::memory_bytes)
                 .sum::<usize>()
-            + heap(&self.state.calm)
+            + heap(&self.state.mean_position)
             + self.scratch.cache.memory_bytes()
             + self.state.grant.memory_bytes()
     }
@@ -199,7 +202,7 @@ impl Particles {
     }
 
     fn stored(&self, i: usize) -> usize {
-        self.order.stored(i as u32) as usize
+        self.order.stored(Given(i as u32)).index()
     }
 
     /// The coordinates as three arrays in storage order, in the cloth's frame \[m\].
@@ -213,13 +216,13 @@ impl Particles {
     }
 
     /// Position of a particle between the last two steps: `fraction` 0 is the one before, 1 the last one. In the cloth's
-    /// frame \[m\]. `i` is in storage order, as in
-    /// [`Topology::particle_of_vertex`](crate::topology::Topology::particle_of_vertex()).
+    /// frame \[m\].
     ///
     /// # Panics
-    /// When `i` is out of range.
+    /// When `particle` is out of range.
     #[inline]
-    pub fn interpolated(&self, i: usize, fraction: f32) -> Vec3 {
+    pub fn interpolated(&self, particle: Stored, fraction: f32) -> Vec3 {
+        let i = particle.index();
         let (from, to) = (self.state.step_position.get(i), self.state.position.get(i));
         // This form gives both ends exactly.
         from * (1.0 - fraction) + to * fraction
@@ -254,26 +257,26 @@ impl Particles {
     /// Returns whether a particle is held by a pin.
     pub fn is_pinned(&self, i: usize) -> bool {
         let pins = self.input.held.of(HolderKind::Pin);
-        pins.binary_search_by_key(&(i as u32), |pin| self.order.given(pin.particle))
+        pins.binary_search_by_key(&Given(i as u32), |pin| self.order.given(pin.particle))
             .is_ok()
     }
 
     /// Returns whether a pin, a rigid attachment or a motion constraint of distance 0 holds a particle.
     pub fn is_held(&self, i: usize) -> bool {
-        let stored = self.order.stored(i as u32);
+        let stored = self.order.stored(Given(i as u32));
         self.anchors().any(|anchor| anchor == stored)
     }
 
     /// The pinned particles, in order.
     pub fn pinned(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        let given = |(particle, _)| self.order.given(particle) as usize;
+        let given = |(particle, _)| self.order.given(particle).index();
         self.input.held.pins().map(given)
     }
 
     /// The particle that a grab holds.
     pub fn grabbed(&self) -> Option<usize> {
         let (particle, _) = self.input.held.in_hand()?;
-        Some(self.order.given(particle) as usize)
+        Some(self.order.given(particle).index())
     }
 
     /// Gives every particle its share of the mass; those that are held become kinematic.
@@ -293,7 +296,7 @@ impl Particles {
         }
         let Input { inv_mass, held, .. } = &mut self.input;
         for i in held.particles() {
-            if let Some(inv_mass) = inv_mass.get_mut(i as usize) {
+            if let Some(inv_mass) = inv_mass.get_mut(i.index()) {
                 *inv_mass = 0.0;
             }
         }
@@ -308,8 +311,8 @@ impl Particles {
         changed
     }
 
-    /// Particles that are kinematic wherever they go, in storage order: the others are tethered to them.
-    pub fn anchors(&self) -> impl Iterator<Item = u32> + Clone + '_ {
+    /// Particles that are kinematic wherever they go: the others are tethered to them.
+    pub fn anchors(&self) -> impl Iterator<Item = Stored> + Clone + '_ {
         self.input.held.anchors()
     }
 
@@ -331,7 +334,7 @@ impl Particles {
             ..
         } = &mut self.state;
         for i in self.input.held.particles() {
-            previous_position.set(i as usize, position.get(i as usize));
+            previous_position.set(i.index(), position.get(i.index()));
         }
     }
 
@@ -362,7 +365,7 @@ impl Particles {
             self.state.position.set(i, *place);
         }
         for (particle, place) in self.input.held.pins() {
-            self.state.position.set(particle as usize, place);
+            self.state.position.set(particle.index(), place);
         }
         self.begin_step();
         self.reset_to_step_start();

@@ -4,20 +4,21 @@ use bevy_math::{Isometry3d, Mat3, Quat, Vec3};
 use fearless_simd::Level;
 
 use crate::{
-    cloth::Cloth,
+    cloth::ClothData,
     contact::colliders::Colliders,
     frame::{Frame, Taken},
     kernels::{range::are_finite, rigid},
     particles::{Input, Particles, State},
     solve,
     substep::Substep,
+    topology::order::Stored,
 };
 
 /// A stage of a substep: a change of a cloth.
-pub type Stage = fn(&Substep, &Colliders, &mut Cloth);
+pub type Stage = fn(&Substep, &Colliders, &mut ClothData);
 
 /// The stages of a substep, in their order.
-pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, CALM];
+pub const STAGES: [Stage; 6] = [ADVANCE, INTEGRATE, APPROACH, SOLVE, COLLIDE, DAMP];
 
 /// Moves the frame, and with it the particles that others hold.
 pub const ADVANCE: Stage = |substep, _, cloth| advance(substep, cloth);
@@ -35,7 +36,7 @@ pub const SOLVE: Stage = |substep, _, cloth| solve::solve(substep, cloth);
 pub const COLLIDE: Stage = |substep, colliders, cloth| colliders.collide_all(substep, cloth);
 
 /// Damps tangles at the end of the last substep, and measures strain.
-pub const CALM: Stage = |substep, _, cloth| solve::calm(substep, cloth);
+pub const DAMP: Stage = |substep, _, cloth| solve::damp_tangles(substep, cloth);
 
 /// Takes a group of cloths through all substeps of a step, side by side: all are in the same stage of the same substep. `nth` gives the
 /// parameters of the substep of an index. A cloth that meets no other is a group of one.
@@ -43,7 +44,7 @@ pub fn step<'a>(
     count: u32,
     nth: impl Fn(u32) -> Substep<'a>,
     colliders: &Colliders,
-    group: &mut [Cloth],
+    group: &mut [ClothData],
 ) {
     for index in 0..count {
         let substep = nth(index);
@@ -63,7 +64,7 @@ pub struct Report {
     /// The part of the edges that is longer than the fabric lets them be [-].
     pub stretched: f32,
     /// The first particle, in storage order, whose position or velocity is not finite.
-    pub non_finite: Option<u32>,
+    pub non_finite: Option<Stored>,
 }
 
 impl Report {
@@ -85,13 +86,13 @@ impl Report {
             non_finite: if finite {
                 None
             } else {
-                wrong().map(|i| i as u32)
+                wrong().map(|i| Stored(i as u32))
             },
         }
     }
 }
 
-fn advance(substep: &Substep, cloth: &mut Cloth) {
+fn advance(substep: &Substep, cloth: &mut ClothData) {
     advance_frame(cloth.frame, substep, cloth.particles);
     if let Some(limits) = cloth.limits {
         limits.advance(substep, cloth.particles);
@@ -107,15 +108,15 @@ fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles
         return;
     }
     let (_, fraction) = substep.fractions();
-    let way = Vec3::from(frame.end.translation - frame.start.translation);
+    let displacement = Vec3::from(frame.end.translation - frame.start.translation);
     if substep.index == 0 {
         let seconds = substep.seconds * substep.count as f32;
         (particles.state.effort).carried([frame.start, frame.end], seconds);
     }
     let (offset, to) = if substep.left() == 1 {
-        (way, frame.end)
+        (displacement, frame.end)
     } else {
-        let offset = fraction * way;
+        let offset = fraction * displacement;
         let place = Vec3::from(frame.start.translation) + offset;
         let rotation = frame.start.rotation.slerp(frame.end.rotation, fraction);
         (offset, Isometry3d::new(place, rotation))
@@ -155,7 +156,7 @@ fn advance_frame(frame: &mut Frame, substep: &Substep, particles: &mut Particles
     rigid::rotate(rotation, lost_displacement);
     if frame.felt.spin != Vec3::ZERO {
         let turned = inverse * frame.felt.spin * substep.seconds;
-        rigid::fling(turned, inv_mass, position);
+        rigid::add_centrifugal(turned, inv_mass, position);
     }
 }
 

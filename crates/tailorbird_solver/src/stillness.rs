@@ -20,21 +20,21 @@ impl Particles {
     /// A crease that trembles stays where it is, however fast; a swinging cloth does not.
     pub fn is_at_rest(&mut self, speed: f32, seconds: f32) -> bool {
         let runs = self.len().div_ceil(RUN);
-        let known = self.state.calm.len() == runs;
-        self.state.calm.resize(runs, Vec3::ZERO);
+        let known = self.state.mean_position.len() == runs;
+        self.state.mean_position.resize(runs, Vec3::ZERO);
         let part = if known {
             seconds / (MEAN + seconds)
         } else {
             1.0
         };
         let (mut sum, mut most) = (0.0, 0.0_f32);
-        for (run, calm) in self.state.calm.iter_mut().enumerate() {
+        for (run, mean_position) in self.state.mean_position.iter_mut().enumerate() {
             let run = run * RUN..((run + 1) * RUN).min(self.input.inv_mass.len());
             let mean = |list: &[f32]| list[run.clone()].iter().sum::<f32>() / run.len() as f32;
             let position = &self.state.position;
             let place = Vec3::new(mean(&position.x), mean(&position.y), mean(&position.z));
-            let away = (place - *calm).length_squared();
-            *calm += part * (place - *calm);
+            let away = (place - *mean_position).length_squared();
+            *mean_position += part * (place - *mean_position);
             sum += away;
             most = most.max(away);
         }

@@ -16,56 +16,57 @@ use crate::{
         Topology,
         geodesic::{Geodesics, tether_anchors},
         lattice::Lattice,
+        order::Stored,
     },
 };
 
 /// Distances of each particle from up to four of the pins along the sheet at rest: no particle gets further away. In storage order.
 #[derive(Clone, Debug, Default)]
 pub struct Tethers {
-    fields: Fields,
-    pins: Vec<u32>,
+    measured: AllDistances,
+    pins: Vec<Stored>,
     revision: u64,
     coming: Option<Coming>,
     /// For how long what is beyond them comes back slowly, as some are new \[s\].
     fresh: f32,
 }
 
-/// Ways that are measured while the cloth goes on.
+/// Distances that are measured while the cloth goes on.
 #[derive(Clone, Debug)]
 struct Coming {
     /// The step that begins with them.
     due: u64,
     anchors: Vec<u32>,
-    fields: Arc<OnceLock<Fields>>,
+    measured: Arc<OnceLock<AllDistances>>,
 }
 
 /// Largest additional length of tethers where pins are further apart than the sheet between them is long [-].
 const ROOM_BEYOND: f32 = 0.02;
 
-type Fields = [Option<Field>; Tethers::MOST];
+type AllDistances = [Option<PinDistances>; Tethers::MOST];
 
-/// Ways from new pins are fresh for so long \[s\].
+/// Time for which distances from new pins are fresh \[s\].
 const FRESH: f32 = 0.5;
 
 /// Largest number of distances between pins and particles that is measured within a step.
-const WAYS_PER_STEP: usize = 4000;
+const DISTANCES_PER_STEP: usize = 4000;
 
-/// The ways from one pin.
+/// Distances of all particles from one pin.
 #[derive(Clone, Debug)]
-struct Field {
+struct PinDistances {
     pin: u32,
-    ways: Ways,
+    lengths: PathLengths,
 }
 
 #[derive(Clone, Debug)]
-enum Ways {
+enum PathLengths {
     /// Along a sheet that is flat at rest.
     Straight(Lattice, Straight),
     /// One for each particle \[m\].
     Lengths(Vec<f32>),
 }
 
-impl Ways {
+impl PathLengths {
     /// Distance to a particle \[m\].
     fn length(&self, particle: u32) -> Option<f32> {
         match self {
@@ -92,15 +93,15 @@ impl Tethers {
 
     /// The pins that particles are tethered to.
     pub fn pins(&self) -> impl Iterator<Item = u32> + '_ {
-        self.fields.iter().flatten().map(|field| field.pin)
+        self.measured.iter().flatten().map(|from| from.pin)
     }
 
     /// Distance of a particle from each of [`Self::pins`] \[m\]; none if there is no such particle.
     pub fn lengths(&self, particle: u32) -> impl Iterator<Item = f32> + '_ {
-        self.fields
+        self.measured
             .iter()
             .flatten()
-            .filter_map(move |field| field.ways.length(particle))
+            .filter_map(move |from| from.lengths.length(particle))
     }
 
     /// Returns whether some of the pins are new: particles may be farther from them than their tethers allow.
@@ -110,21 +111,21 @@ impl Tethers {
 
     /// Memory of the distances on the heap \[byte\].
     pub fn memory_bytes(&self) -> usize {
-        let fields = self.fields.iter().flatten();
-        let ways = fields.map(|field| match &field.ways {
-            Ways::Straight(..) => 0,
-            Ways::Lengths(lengths) => heap(lengths),
+        let measured = self.measured.iter().flatten();
+        let bytes = measured.map(|from| match &from.lengths {
+            PathLengths::Straight(..) => 0,
+            PathLengths::Lengths(lengths) => heap(lengths),
         });
-        heap(&self.pins) + ways.sum::<usize>()
+        heap(&self.pins) + bytes.sum::<usize>()
     }
 
     /// Largest ratio of the distance between two pins to the length of the sheet between them, at least 1 [-].
-    fn longer(&self, field: &Field, position: &Points) -> f32 {
-        let at = position.get(field.pin as usize);
-        let others = self.fields.iter().flatten();
+    fn longer(&self, from: &PinDistances, position: &Points) -> f32 {
+        let at = position.get(from.pin as usize);
+        let others = self.measured.iter().flatten();
         let far = others.filter_map(|other| {
-            let way = field.ways.length(other.pin).filter(|way| *way > 0.0)?;
-            Some(at.distance(position.get(other.pin as usize)) / way)
+            let length = from.lengths.length(other.pin).filter(|l| *l > 0.0)?;
+            Some(at.distance(position.get(other.pin as usize)) / length)
         });
         let most = far.fold(1.0, f32::max);
         most * (1.0 + (most - 1.0).min(ROOM_BEYOND))
@@ -132,55 +133,58 @@ impl Tethers {
 
     /// Positions of the pins now and at the start of the substep, and the distances from each.
     pub fn anchors(&self, position: &Points, previous: &Points) -> Anchors<'_> {
-        let fields = self.fields.each_ref().map(Option::as_ref);
-        let at = |field: &Field| position.get(field.pin as usize);
-        let before = |field: &Field| previous.get(field.pin as usize);
-        if let Some(Some(Field {
-            ways: Ways::Straight(lattice, _),
+        let measured = self.measured.each_ref().map(Option::as_ref);
+        let at = |from: &PinDistances| position.get(from.pin as usize);
+        let before = |from: &PinDistances| previous.get(from.pin as usize);
+        if let Some(Some(PinDistances {
+            lengths: PathLengths::Straight(lattice, _),
             ..
-        })) = fields.first()
+        })) = measured.first()
         {
             let usable = (lattice.columns * lattice.rows) as usize == position.len();
-            return Anchors::Straight(fields.map(|field| match &field?.ways {
-                Ways::Straight(_, ways) if usable => Some(Tether {
-                    anchor: at(field?),
-                    anchor_before: before(field?),
-                    longer: self.longer(field?, position),
-                    ways: *ways,
+            return Anchors::Straight(measured.map(|from| match &from?.lengths {
+                PathLengths::Straight(_, straight) if usable => Some(Tether {
+                    anchor: at(from?),
+                    anchor_before: before(from?),
+                    longer: self.longer(from?, position),
+                    distances: *straight,
                 }),
                 _ => None,
             }));
         }
-        Anchors::Lengths(fields.map(|field| match &field?.ways {
-            Ways::Lengths(lengths) if lengths.len() == position.len() => Some(Tether {
-                anchor: at(field?),
-                anchor_before: before(field?),
-                longer: self.longer(field?, position),
-                ways: Reading(lengths),
+        Anchors::Lengths(measured.map(|from| match &from?.lengths {
+            PathLengths::Lengths(lengths) if lengths.len() == position.len() => Some(Tether {
+                anchor: at(from?),
+                anchor_before: before(from?),
+                longer: self.longer(from?, position),
+                distances: Reading(lengths),
             }),
             _ => None,
         }))
     }
 
     /// The point nearest to `p` that a particle gets to, its tethers being `slack` times as long as at rest \[m\].
-    pub fn reached(&self, particle: u32, p: Vec3, position: &Points, slack: f32) -> Vec3 {
-        self.fields.iter().flatten().fold(p, |p, field| {
-            let anchor = position.get(field.pin as usize);
-            let reach = field.ways.length(particle).map_or(f32::MAX, |l| l * slack);
+    pub fn reached(&self, particle: Stored, p: Vec3, position: &Points, slack: f32) -> Vec3 {
+        self.measured.iter().flatten().fold(p, |p, from| {
+            let anchor = position.get(from.pin as usize);
+            let reach = from
+                .lengths
+                .length(particle.0)
+                .map_or(f32::MAX, |l| l * slack);
             anchor + (p - anchor).clamp_length_max(reach)
         })
     }
 
-    /// Measures the ways to the pins anew where the pins changed, at the start of the step number `step`, which lasts so long \[s\].
+    /// Measures the distances from the pins anew where the pins changed, at the start of the step number `step`, which lasts so long \[s\].
     ///
-    /// A sheet of columns and rows that is flat at rest has no holes, so that the way is the straight line. On other meshes it has to be
+    /// A sheet of columns and rows that is flat at rest has no holes, so that the shortest path is the straight line. On other meshes it has to be
     /// found: that of a large one beside the steps, and used from a step on that depends on the size of the mesh alone. Until then its
     /// particles are tethered to those of the pins before that still hold. What is farther from a new pin than it gets comes back at a
     /// rate, not at once.
     pub fn build(
         &mut self,
         topology: &Arc<Topology>,
-        pins: impl Iterator<Item = u32> + Clone,
+        pins: impl Iterator<Item = Stored> + Clone,
         (step, seconds): (u64, f32),
     ) {
         let known = self.revision == topology.revision;
@@ -191,8 +195,8 @@ impl Tethers {
             if self.coming.as_ref().is_some_and(|c| step >= c.due)
                 && let Some(coming) = self.coming.take()
             {
-                let measured = coming.fields.get().cloned();
-                self.fields = measured.unwrap_or_else(|| fields(topology, &coming.anchors));
+                let measured = coming.measured.get().cloned();
+                self.measured = measured.unwrap_or_else(|| measure(topology, &coming.anchors));
                 self.fresh = FRESH;
             }
             return;
@@ -200,41 +204,41 @@ impl Tethers {
         self.revision = topology.revision;
         self.pins = pins.collect();
         self.coming = None;
-        let mut pins = self.pins.clone();
+        let mut pins: Vec<u32> = self.pins.iter().map(|pin| pin.0).collect();
         // So that a sheet does the same however its particles were given.
         pins.sort_unstable();
         let rest = &topology.rest_positions;
         let anchors = tether_anchors(&pins, rest, Self::MOST);
-        let ways = if is_straight(topology) {
+        let count = if is_straight(topology) {
             0
         } else {
             anchors.len() * rest.len()
         };
         // A cloth that is made or changed shape is not moving yet.
-        if !known || ways < WAYS_PER_STEP {
-            self.fields = fields(topology, &anchors);
+        if !known || count < DISTANCES_PER_STEP {
+            self.measured = measure(topology, &anchors);
             self.fresh = if known { FRESH } else { 0.0 };
             return;
         }
-        for field in &mut self.fields {
-            field.take_if(|field| pins.binary_search(&field.pin).is_err());
+        for from in &mut self.measured {
+            from.take_if(|from| pins.binary_search(&from.pin).is_err());
         }
         let coming = Coming {
-            due: step + (ways / WAYS_PER_STEP) as u64,
+            due: step + (count / DISTANCES_PER_STEP) as u64,
             anchors,
-            fields: Arc::default(),
+            measured: Arc::default(),
         };
         // Without a pool they are measured when they are due.
         if let Some(pool) = AsyncComputeTaskPool::try_get() {
             let (topology, wanted) = (topology.clone(), coming.clone());
-            let measure = async move {
-                // Nobody waits for ways that changed again meanwhile.
-                if Arc::strong_count(&wanted.fields) > 1 {
-                    let fields = fields(&topology, &wanted.anchors);
-                    wanted.fields.get_or_init(|| fields);
+            let work = async move {
+                // Nobody waits for distances that changed again meanwhile.
+                if Arc::strong_count(&wanted.measured) > 1 {
+                    let measured = measure(&topology, &wanted.anchors);
+                    wanted.measured.get_or_init(|| measured);
                 }
             };
-            pool.spawn(measure).detach();
+            pool.spawn(work).detach();
         }
         self.coming = Some(coming);
     }
@@ -245,16 +249,16 @@ fn is_straight(topology: &Topology) -> bool {
     topology.flat && topology.lattice().is_some()
 }
 
-/// The ways from these particles.
-fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
-    let ways = (!is_straight(topology) && !anchors.is_empty())
+/// Measures the distances from these particles.
+fn measure(topology: &Topology, anchors: &[u32]) -> AllDistances {
+    let geodesics = (!is_straight(topology) && !anchors.is_empty())
         .then(|| Geodesics::new(&topology.rest_positions, &topology.triangles));
     let mut anchors = anchors.iter().copied();
     [(); Tethers::MOST].map(|()| {
         let pin = anchors.next()?;
-        let ways = match (topology.lattice(), &ways) {
-            (_, Some(ways)) => Ways::Lengths(ways.distances(&[pin])),
-            (Some(lattice), None) => Ways::Straight(
+        let lengths = match (topology.lattice(), &geodesics) {
+            (_, Some(geodesics)) => PathLengths::Lengths(geodesics.distances(&[pin])),
+            (Some(lattice), None) => PathLengths::Straight(
                 *lattice,
                 Straight {
                     column: pin % lattice.columns,
@@ -264,6 +268,6 @@ fn fields(topology: &Topology, anchors: &[u32]) -> Fields {
             ),
             (None, None) => return None,
         };
-        Some(Field { pin, ways })
+        Some(PinDistances { pin, lengths })
     })
 }

@@ -19,8 +19,8 @@ pub fn hash<'a>(cloths: impl IntoIterator<Item = &'a ClothParticles>) -> u64 {
 /// If there are not as many of both.
 pub fn furthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     assert_eq!(a.len(), b.len());
-    let ways = a.iter().zip(b).map(|(a, b)| a.distance(*b));
-    ways.fold(0.0, f32::max)
+    let distances = a.iter().zip(b).map(|(a, b)| a.distance(*b));
+    distances.fold(0.0, f32::max)
 }
 
 /// A number from −1 to 1 that looks random, always the same for the same key (splitmix64, Steele et al. 2014).

@@ -240,9 +240,9 @@ impl Sim {
         self.edit(entity, |at: &mut Transform| *at = to);
     }
 
-    /// Moves an entity by a way.
-    pub fn shift(&mut self, entity: Entity, way: Vec3) {
-        self.edit(entity, |at: &mut Transform| at.translation += way);
+    /// Moves an entity by a displacement.
+    pub fn shift(&mut self, entity: Entity, displacement: Vec3) {
+        self.edit(entity, |at: &mut Transform| at.translation += displacement);
     }
 
     /// A resource.

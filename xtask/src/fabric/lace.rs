@@ -75,7 +75,7 @@ fn net(u: f32, v: f32) -> f32 {
     beside.min(across.abs())
 }
 
-/// How far a place is outside the nearest flower's or leaf's edge \[mesh\]; negative inside.
+/// Distance of a place outside the nearest flower's or leaf's edge \[mesh\]; negative inside.
 fn flower(u: f32, v: f32) -> f32 {
     let near = |t: f32, at: f32| t - at - (t - at).round();
     let rosette = |at: (f32, f32), radius: f32, petals: f32, turn: f32| {

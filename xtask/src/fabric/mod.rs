@@ -5,27 +5,27 @@ mod noise;
 mod sheet;
 mod weave;
 
-/// What lies at a place of a tile.
+/// Properties of a place of a tile.
 #[derive(Clone, Copy, Default)]
 pub struct Texel {
     /// Height over the middle of the fabric, in [`Fabric::units`].
     pub height: f32,
     /// Linear colour.
     pub color: [f32; 3],
-    /// How open the place is to light: 0 in gaps, 1 on top \[-\].
+    /// Openness of the place to light: 0 in gaps, 1 on top \[-\].
     pub openness: f32,
     /// Perceptual roughness \[-\].
     pub roughness: f32,
-    /// How much of it there is: 0 in holes \[-\].
+    /// Part of it that is covered: 0 in holes \[-\].
     pub cover: f32,
 }
 
 /// The surface of a fabric.
 pub trait Fabric {
-    /// What lies at a place: `u` and `v` run from 0 to 1 over a tile, and on.
+    /// Properties of a place: `u` and `v` run from 0 to 1 over a tile, and on.
     fn at(&self, u: f32, v: f32) -> Texel;
 
-    /// How many units of height make the side of a tile.
+    /// Number of units of height that make the side of a tile.
     fn units(&self) -> f32;
 }
 

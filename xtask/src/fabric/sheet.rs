@@ -1,4 +1,4 @@
-//! What is not woven: leather and rubber.
+//! Sheets that are not woven: leather and rubber.
 
 use super::{
     Fabric, Texel,

@@ -15,7 +15,7 @@ use super::{
 pub struct Weave {
     /// Yarns on a tile, in each direction; a multiple of the weave's repeat.
     pub yarns: u32,
-    /// Whether the warp lies over the weft where the two cross.
+    /// Returns whether the warp lies over the weft where the two cross.
     pub warp_is_over: fn(warp: u32, weft: u32) -> bool,
     /// The yarns along v.
     pub warp: Yarn,
@@ -23,23 +23,23 @@ pub struct Weave {
     pub weft: Yarn,
 }
 
-/// What the yarns of one direction look like.
+/// Look of the yarns of one direction.
 pub struct Yarn {
     /// Linear colour.
     pub color: [f32; 3],
     /// Half the width of a yarn \[spacing\].
     pub radius: f32,
-    /// How much the width changes along a yarn and between yarns \[-\].
+    /// Change of the width along a yarn and between yarns \[-\].
     pub slub: f32,
-    /// How much the brightness changes along a yarn and between yarns \[-\].
+    /// Change of the brightness along a yarn and between yarns \[-\].
     pub tone: f32,
-    /// How far a yarn strays to the side \[spacing\].
+    /// Distance that a yarn strays to the side \[spacing\].
     pub stray: f32,
     /// Share of the colour that has worn off where a yarn is highest \[-\].
     pub wear: f32,
     /// Roughness where a yarn is highest \[-\].
     pub gloss: f32,
-    /// How high the fibres on it stand, as a part of those of cotton \[-\].
+    /// Height of the fibres on it, as a part of those of cotton \[-\].
     pub fuzz: f32,
     /// Tells the noise of the two directions and of different cloths apart.
     pub seed: u32,

@@ -1,4 +1,4 @@
-//! Where mutants are built and run: a copy of the solver in the target folder, in a workspace of its own.
+//! Workplace in which mutants are built and run: a copy of the solver in the target folder, in a workspace of its own.
 
 use std::{
     collections::BTreeMap,

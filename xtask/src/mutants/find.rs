@@ -17,17 +17,17 @@ const LARGER: f64 = 1.1;
 /// An expression, and what stands in its place.
 #[derive(Clone, Debug)]
 pub struct Mutant {
-    /// Which file.
+    /// Index of the file.
     pub source: usize,
     /// Counted from 1.
     pub line: usize,
-    /// Where the expression is, in bytes.
+    /// Range of the expression in the file, in bytes.
     pub range: Range<usize>,
-    /// What stands in its place.
+    /// Text that stands in its place.
     pub text: String,
     /// Such as `+ → -`, with `#2` behind it where that is the second in its line.
     pub change: String,
-    /// Whether a number is changed.
+    /// True if a number is changed.
     pub is_number: bool,
 }
 
@@ -94,7 +94,7 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-/// What an operator is changed to.
+/// Operator that an operator is changed to.
 fn other_operator(operator: &BinOp) -> Option<&'static str> {
     Some(match operator {
         BinOp::Add(_) => "-",
@@ -113,7 +113,7 @@ fn other_operator(operator: &BinOp) -> Option<&'static str> {
     })
 }
 
-/// What a comparison of vectors, or a bound, is changed to.
+/// Method that a comparison of vectors, or a bound, is changed to.
 fn other_method(name: &str) -> Option<&'static str> {
     Some(match name {
         "simd_lt" => "simd_gt",

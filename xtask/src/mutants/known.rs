@@ -16,7 +16,7 @@ struct Survivor {
     file: String,
     /// Its line, without the space around.
     code: String,
-    /// What is changed, as the table says it; several where they have one reason.
+    /// Changes, as the table says them; several where they have one reason.
     changes: Vec<String>,
     /// Why no test can tell, or need not.
     #[serde(rename = "reason")]
@@ -32,7 +32,7 @@ impl Known {
         Ok(toml::from_str(&fs::read_to_string(path)?)?)
     }
 
-    /// Whether a mutant may survive.
+    /// Returns whether a mutant may survive.
     pub fn is(&self, file: &str, code: &str, change: &str) -> bool {
         self.survivor.iter().any(|one| {
             one.file == file && one.code == code && one.changes.iter().any(|of| of == change)

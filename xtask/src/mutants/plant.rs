@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::find::Mutant;
 
-/// What the expressions ask. The number of a mutant is that of its place in the list, from 1 on; 0 is none. Where the environment names a
+/// Module that the expressions ask. The number of a mutant is that of its place in the list, from 1 on; 0 is none. Where the environment names a
 /// file, all that ask are written there.
 pub const QUESTION: &str = "
-/// Which mutant is meant.
+/// Number of the mutant that is meant.
 #[doc(hidden)]
 pub mod mutation {
     use std::{
@@ -23,7 +23,7 @@ pub mod mutation {
     static PATH: OnceLock<Option<String>> = OnceLock::new();
     static ASKED: [AtomicBool; 1 << 16] = [const { AtomicBool::new(false) }; 1 << 16];
 
-    /// Whether this one is.
+    /// Returns whether this one is.
     #[inline(always)]
     pub fn is(mutant: u32) -> bool {
         let meant = MEANT.load(Ordering::Relaxed);
@@ -56,11 +56,11 @@ pub struct Planted {
     pub places: Vec<Place>,
 }
 
-/// Where a mutant is.
+/// Place of a mutant.
 pub struct Place {
     /// In the list of all.
     pub mutant: usize,
-    /// What stands for the expression.
+    /// Range that stands for the expression.
     pub instead: Range<usize>,
     /// That, the expression and the question.
     pub whole: Range<usize>,

@@ -13,7 +13,7 @@ use proc_macro2::{TokenStream, TokenTree};
 pub struct Source {
     /// Below that folder.
     pub name: String,
-    /// Whether it holds kernels, and not tests of them.
+    /// True if it holds kernels, and not tests of them.
     pub is_kernel: bool,
     /// With functions for constants; each line has what it has in the file.
     pub text: String,
@@ -125,7 +125,7 @@ fn turned(source: &Source, all: &Constants) -> Result<String, Box<dyn Error>> {
     edited(&source.text, &here, all)
 }
 
-/// Whether a `use` has all of these words.
+/// Returns whether a `use` has all of these words.
 fn imported(text: &str, words: &[String]) -> bool {
     let mut uses = text
         .split(';')
@@ -150,7 +150,7 @@ fn edited(text: &str, names: &BTreeSet<String>, all: &Constants) -> Result<Strin
     Ok(text)
 }
 
-/// Where to replace what by what.
+/// Start and end of what is replaced, and its replacement.
 type Edit = (usize, usize, &'static str);
 
 fn walk(tokens: TokenStream, names: &BTreeSet<String>, all: &Constants, edits: &mut Vec<Edit>) {
@@ -195,7 +195,7 @@ fn walk(tokens: TokenStream, names: &BTreeSet<String>, all: &Constants, edits: &
     }
 }
 
-/// Whether these tokens end with a constant behind the name of its file.
+/// Returns whether these tokens end with a constant behind the name of its file.
 fn is_behind(tokens: &[TokenTree], all: &Constants) -> bool {
     let [.., file, first, second, name] = tokens else {
         return false;

@@ -16,7 +16,7 @@ use super::bench::Bench;
 /// Tests that take no longer than this part of all of them come first.
 const QUICK: u32 = 20;
 
-/// What became of a mutant.
+/// Fate of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// A test fails with it.
@@ -101,7 +101,7 @@ impl Tests {
         Ok(tests)
     }
 
-    /// What becomes of a mutant in the tests that come by it, quick ones first.
+    /// Finds the fate of a mutant in the tests that come by it, quick ones first.
     pub fn fate(&self, mutant: usize) -> Result<Fate, Box<dyn Error>> {
         let total: Duration = self.all.iter().map(|test| test.takes).sum();
         let asking = self.all.iter().filter(|test| test.asks[mutant]);

@@ -1,4 +1,4 @@
-//! Who is measured.
+//! Solvers that are measured.
 
 mod classic;
 mod rapier;
@@ -21,7 +21,7 @@ pub trait Peer {
 /// Makes a solver with a sheet at its start and so many passes in a step.
 pub type Builder = fn(Sheet, u8) -> Box<dyn Peer>;
 
-/// Which solver.
+/// A solver.
 #[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PeerKind {
     /// Verlet integration and relaxation over 8 N² springs, plain scalar code.
@@ -52,7 +52,7 @@ impl PeerKind {
         }
     }
 
-    /// What makes it.
+    /// Constructor of its scene.
     ///
     /// # Errors
     /// When it is not built in.

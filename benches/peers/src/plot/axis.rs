@@ -28,7 +28,7 @@ impl Axis {
         self.from..self.to
     }
 
-    /// Where to write numbers: at 1, 2 and 5 of each decade, or at whole decades of a long axis.
+    /// Places of the numbers: at 1, 2 and 5 of each decade, or at whole decades of a long axis.
     pub fn ticks(self) -> Vec<f64> {
         let long = self.to / self.from > 1e4;
         let steps: &[u32] = if long { &[1] } else { &[1, 2, 5] };

@@ -2,6 +2,8 @@
 
 use bevy_math::Vec3;
 
+use tailorbird_solver::topology::order::Stored;
+
 use super::drawn::Drawn;
 
 /// Binding of a vertex of a mesh. Particles are in storage order.
@@ -114,15 +116,17 @@ impl Bindings {
             if *vertex as usize >= vertices.end {
                 break;
             }
-            let sum = |at: &dyn Fn(usize) -> Vec3| {
+            let sum = |at: &dyn Fn(Stored) -> Vec3| {
                 let each = corners.iter().zip(weights);
-                each.map(|(i, weight)| *weight * at(*i as usize))
+                each.map(|(i, weight)| *weight * at(Stored(*i)))
                     .sum::<Vec3>()
             };
             let place =
                 sum(&|i| drawn.particles.interpolated(i, drawn.fraction) + drawn.holds.offset(i));
-            let normal =
-                || sum(&|i| drawn.normals.interpolated(i, drawn.fraction)).normalize_or(Vec3::Z);
+            let normal = || {
+                sum(&|i| drawn.normals.interpolated(i.index(), drawn.fraction))
+                    .normalize_or(Vec3::Z)
+            };
             f(*vertex as usize, place / drawn.scale, normals.then(normal));
         }
     }

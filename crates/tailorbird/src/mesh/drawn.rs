@@ -11,7 +11,7 @@ pub(super) struct Drawn<'a> {
     pub particles: &'a ClothParticles,
     pub normals: &'a ClothNormals,
     pub holds: &'a ClothDrawnHolds,
-    /// The part of the way between the last two steps, 0 to 1.
+    /// The part of the time between the last two steps, 0 to 1.
     pub fraction: f32,
     /// Of the cloth's entity.
     pub scale: Vec3,

@@ -38,7 +38,7 @@ pub struct SheetVertices<'a> {
 pub struct Between<'a> {
     /// After the step before, and after the last one.
     pub ends: [&'a Points; 2],
-    /// The part of the way, 0 to 1.
+    /// The part of the path, 0 to 1.
     pub fraction: f32,
     /// Offsets that are added.
     pub offsets: Option<&'a Points>,

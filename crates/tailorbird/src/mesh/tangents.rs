@@ -68,14 +68,14 @@ impl Tangents {
         }
         let (mut starts, mut neighbors) = (vec![0], Vec::new());
         for (vertex, mut around) in around.into_iter().enumerate() {
-            let way = |neighbor: u32| uvs[neighbor as usize] - uvs[vertex];
+            let offset = |neighbor: u32| uvs[neighbor as usize] - uvs[vertex];
             let along_u = |neighbor: &u32| {
-                let way = way(*neighbor);
-                way.y.abs() < ALONG * way.x.abs()
+                let offset = offset(*neighbor);
+                offset.y.abs() < ALONG * offset.x.abs()
             };
             if around.keys().any(along_u) {
                 around.retain(|neighbor, weight| {
-                    *weight = way(*neighbor).x.recip();
+                    *weight = offset(*neighbor).x.recip();
                     along_u(neighbor)
                 });
             }
@@ -102,8 +102,8 @@ impl Tangents {
         for (vertex, tangent) in (first..).zip(tangents) {
             let own = surface.at(vertex, position);
             let neighbors = self.starts[vertex] as usize..self.starts[vertex + 1] as usize;
-            let ways = self.neighbors[neighbors].iter();
-            let along_u = ways.fold(Vec3::ZERO, |sum, (neighbor, weight)| {
+            let neighbors = self.neighbors[neighbors].iter();
+            let along_u = neighbors.fold(Vec3::ZERO, |sum, (neighbor, weight)| {
                 sum + *weight * (surface.at(*neighbor as usize, position) - own)
             });
             let normal = surface.at(vertex, normal);

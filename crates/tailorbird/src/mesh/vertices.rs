@@ -189,7 +189,11 @@ impl Vertices {
     }
 
     fn particles_of_vertices(&self, topology: &Topology) -> Vec<u32> {
-        let particle = |v: &u32| topology.particle_of_vertex(self.first_vertex + *v as usize);
+        let particle = |v: &u32| {
+            topology
+                .particle_of_vertex(self.first_vertex + *v as usize)
+                .0
+        };
         self.source_vertex.iter().map(particle).collect()
     }
 

@@ -129,12 +129,12 @@ pub(super) fn follow_cloth(
         }
         _ => 1.0,
     };
-    let way = if uploads.is_some() {
+    let method = if uploads.is_some() {
         settings.write
     } else {
         ClothMeshWrite::Asset
     };
-    let skips = way == ClothMeshWrite::Slab && settings.unseen == ClothUnseen::Skip;
+    let skips = method == ClothMeshWrite::Slab && settings.unseen == ClothUnseen::Skip;
     let mut jobs = Vec::new();
     let mut all: Vec<_> = cloths.iter_mut().collect();
     for (cloth_mesh, rest, particles, normals, topology, frame, held) in &mut all {
@@ -177,7 +177,7 @@ pub(super) fn follow_cloth(
                 continue;
             }
             // Others may have changed an asset that was written in each frame.
-            let elsewhere = part.went.replace(way) != Some(way);
+            let elsewhere = part.went.replace(method) != Some(method);
             part.outdated |= elsewhere && part.in_asset;
             let mesh = meshes.get(&part.handle);
             let changed = mesh.is_some_and(|mesh| part.check(mesh)) || elsewhere;

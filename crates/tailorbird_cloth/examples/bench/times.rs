@@ -158,7 +158,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
         shear::solve(level, sheet, shear, 0..n);
     });
     let tether = |anchor, column| {
-        let ways = Straight {
+        let distances = Straight {
             column,
             row: 0,
             spacing: Vec2::splat(SPACING),
@@ -167,7 +167,7 @@ fn of_constraints(times: &mut Times, level: Level, side: u32) {
             anchor,
             anchor_before: anchor,
             longer: 1.0,
-            ways,
+            distances,
         })
     };
     let tethers = [tether(Vec3::ZERO, 0), tether(corner, side - 1)];

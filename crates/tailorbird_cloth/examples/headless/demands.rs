@@ -49,8 +49,8 @@ pub struct Demands {
     pub body: Body,
 
     /// Displacement of the curtain's holder in the scenes pause-move and hop [m].
-    #[arg(long, value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
-    pub way: f32,
+    #[arg(long = "way", value_name = "M", default_value_t = 2.0, value_parser = values::finite, allow_hyphen_values = true)]
+    pub displacement: f32,
 
     /// Holder of the curtain there.
     #[arg(long, value_enum, default_value_t = Held::Attached)]

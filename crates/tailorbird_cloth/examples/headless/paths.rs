@@ -22,11 +22,11 @@ pub fn grown(time: f32) -> Vec3 {
 
 /// From 0.35 m above the net to 0.6 m below it, and back.
 pub fn net_ball(time: f32) -> Transform {
-    let way = 0.95;
-    let down = if time < way + 1.0 {
-        time.min(way)
+    let distance = 0.95;
+    let down = if time < distance + 1.0 {
+        time.min(distance)
     } else {
-        (way - (time - way - 1.0)).max(0.0)
+        (distance - (time - distance - 1.0)).max(0.0)
     };
     Transform::from_xyz(0.011, 1.35 - down, 0.007)
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use bevy_math::Vec3;
-use tailorbird_cloth::prelude::*;
+use tailorbird_cloth::{prelude::*, topology::order::Given};
 
 /// Largest values in the steps so far.
 #[derive(Default)]
@@ -51,7 +51,7 @@ impl Peaks {
         let free = (0..particles.len()).filter(|i| !particles.is_held(*i));
         let (mut speed, mut kinetic) = (0.0_f32, 0.0);
         for i in free {
-            let stored = order.stored(i as u32) as usize;
+            let stored = order.stored(Given(i as u32)).index();
             let [to, from] = [particles.points(), particles.previous_points()];
             let v = to.get(stored).distance(from.get(stored)) * hz;
             speed = if v.is_finite() {

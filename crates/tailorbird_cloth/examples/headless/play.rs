@@ -114,7 +114,7 @@ impl Play {
         if let Some(actor) = self.actor
             && let Some(mut holder) = app.world_mut().get_mut::<Transform>(actor)
         {
-            holder.translation.x += self.demands.way;
+            holder.translation.x += self.demands.displacement;
         }
         app.update();
         app.world_mut().resource_mut::<Time<Virtual>>().unpause();
@@ -128,7 +128,7 @@ impl Play {
             Scene::PutBack if time > 4.0 => Some(Transform::default()),
             Scene::PutBack => Some(post(time, demands.apart)),
             Scene::Hop if time > 3.0 => Some(Transform::default()),
-            Scene::Hop if time > 2.0 => Some(Transform::from_xyz(demands.way, 0.0, 0.0)),
+            Scene::Hop if time > 2.0 => Some(Transform::from_xyz(demands.displacement, 0.0, 0.0)),
             Scene::Grow => {
                 if let Some(mut place) = world.get_mut::<Transform>(cloth) {
                     place.scale = grown(time);

@@ -55,11 +55,14 @@ impl ClothAttachedParticles {
             return;
         }
         let count = self.bodies.len() as f32;
-        let way = self.bodies.iter().map(|body| body.excess).sum::<Vec3>() / count;
+        let displacement = self.bodies.iter().map(|body| body.excess).sum::<Vec3>() / count;
         for body in &mut self.0.bodies {
             let place = body.start.place();
             body.jumped.get_or_insert(body.start);
-            let from = Isometry3d::new(place.translation + Vec3A::from(way), place.rotation);
+            let from = Isometry3d::new(
+                place.translation + Vec3A::from(displacement),
+                place.rotation,
+            );
             body.start = body.start.at(from);
         }
     }
@@ -73,8 +76,8 @@ impl ClothAttachedParticles {
     /// Moves the cloth and its motion along with its holders. Returns its rotation, if it moved.
     pub(crate) fn carry(&self, frame: &ClothFrame, particles: &mut ClothParticles) -> Option<Quat> {
         let motion = self.unfelt(frame, particles)?;
-        let (way, turn) = (motion.translation.length(), motion.rotation.xyz().length());
-        if way.max(turn) < STANDS {
+        let (distance, turn) = (motion.translation.length(), motion.rotation.xyz().length());
+        if distance.max(turn) < STANDS {
             return None;
         }
         let Particles {

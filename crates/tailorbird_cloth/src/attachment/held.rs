@@ -46,7 +46,7 @@ impl ClothAttachedParticles {
         self.0.rigid.iter().map(|hold| {
             let body = &self.0.bodies[hold.body as usize];
             HeldPoint {
-                particle: self.0.order.given(hold.particle),
+                particle: self.0.order.given(hold.particle).0,
                 attachment: Entity::from_bits(body.attachment),
                 target: Entity::from_bits(body.target),
                 point: hold.point,
@@ -56,7 +56,7 @@ impl ClothAttachedParticles {
 
     /// The particles at springs.
     pub fn springs(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
-        let given = |spring: &Spring| self.0.order.given(spring.hold.particle);
+        let given = |spring: &Spring| self.0.order.given(spring.hold.particle).0;
         self.0.springs.iter().map(given)
     }
 

@@ -64,7 +64,7 @@ mod prepare;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::pose::Pose;
+use tailorbird_solver::{pose::Pose, topology::order::Given};
 
 pub use held::{ClothAttachedParticles, HeldPoint};
 pub use prepare::{break_attachments, prepare_attachments};
@@ -278,9 +278,9 @@ impl ClothAttachment {
 pub struct ClothAttachmentState {
     /// The last values that were valid.
     valid: Option<ClothAttachment>,
-    /// Particles in storage order, and their points in the target's own space \[m\].
+    /// Particles, and their points in the target's own space \[m\]. A cloth that grows may be stored in another order.
     #[reflect(ignore)]
-    points: Vec<(u32, Vec3)>,
+    points: Vec<(Given, Vec3)>,
     /// Compliance of each particle [m/N]; `None` for a rigid attachment.
     compliances: Option<Vec<f32>>,
     target: Option<Entity>,

@@ -3,7 +3,11 @@
 use bevy_ecs::{prelude::*, relationship::RelationshipTarget};
 use bevy_math::Vec3;
 use bevy_transform::components::GlobalTransform;
-use tailorbird_solver::{holds::Holder, pose::Pose, topology::Topology};
+use tailorbird_solver::{
+    holds::Holder,
+    pose::Pose,
+    topology::{Topology, order::Given},
+};
 
 use super::{
     ClothAttachedParticles, ClothAttachedTo, ClothAttachment, ClothAttachmentBroken,
@@ -155,14 +159,14 @@ pub fn prepare_attachments(
             } else {
                 (from, None)
             };
-            let way = start.displacement_to(&end);
+            let displacement = start.displacement_to(&end);
             if rest.is_unseen() && step.running() {
                 state.velocity = began.displacement_to(&end) / step.world_seconds();
             }
-            let excess = if unfelt || way == Vec3::ZERO && teleport {
+            let excess = if unfelt || displacement == Vec3::ZERO && teleport {
                 Vec3::ZERO
             } else {
-                excess(state.velocity, way, step.world_seconds()).0
+                excess(state.velocity, displacement, step.world_seconds()).0
             };
             let body = Holder {
                 attachment: attachment.to_bits(),
@@ -171,13 +175,13 @@ pub fn prepare_attachments(
                 end,
                 jumped,
                 excess,
-                told: way == Vec3::ZERO && teleport,
+                told: displacement == Vec3::ZERO && teleport,
                 pulled: Vec3::ZERO,
                 substeps: 0,
             };
-            attached
-                .0
-                .add(body, &state.points, state.compliances.as_deref());
+            let points = state.points.iter();
+            let points = points.map(|&(i, point)| (topology.order.stored(i), point));
+            attached.0.add(body, points, state.compliances.as_deref());
         }
         changed |= attached.bodies.len() != bodies_before;
         let mut moved = false;
@@ -189,8 +193,8 @@ pub fn prepare_attachments(
                     && let Ok((.., mut state, _)) =
                         attachments.get_mut(Entity::from_bits(body.attachment))
                 {
-                    let way = body.start.displacement_to(&body.end);
-                    state.velocity = way / step.world_seconds();
+                    let displacement = body.start.displacement_to(&body.end);
+                    state.velocity = displacement / step.world_seconds();
                 }
             }
             moved = attached.take_along(frame, &mut particles);
@@ -268,13 +272,14 @@ impl ClothAttachmentState {
             })
         };
         let stay = stay || grown;
-        let point = |k: usize, i: u32| match &data.offset {
+        let stored = |i: Given| topology.order.stored(i).index();
+        let point = |k: usize, i: Given| match &data.offset {
             ClothAttachmentOffset::Points(points) => points.get(k).or(points.first()).copied(),
             ClothAttachmentOffset::Keep => {
                 let mut before = before.iter().filter(|_| stay);
                 let kept = before.find(|(particle, _)| *particle == i);
                 Some(kept.map_or_else(
-                    || map.undo(particles.0.state.position.get(i as usize)),
+                    || map.undo(particles.0.state.position.get(stored(i))),
                     |&(_, point)| kept_point(point),
                 ))
             }
@@ -298,7 +303,7 @@ impl ClothAttachmentState {
                 .iter()
                 .enumerate()
                 .filter_map(|(k, &i)| {
-                    let i = topology.order.stored(i);
+                    let i = Given(i);
                     Some((i, point(k, i).filter(|p| p.is_finite())?))
                 })
                 .collect();
@@ -307,7 +312,7 @@ impl ClothAttachmentState {
         let masses = self
             .points
             .iter()
-            .map(|&(i, _)| particles.0.input.mass[i as usize]);
+            .map(|&(i, _)| particles.0.input.mass[stored(i)]);
         let mass: f32 = masses.clone().sum();
         let count = self.points.len() as f32;
         self.compliances = (compliance > 0.0).then(|| {

@@ -1,7 +1,7 @@
 //! The stages that keep particles out of colliders.
 
 use bevy_ecs::prelude::*;
-use tailorbird_solver::{contact::solid::Kind, kernels::contact::Phase, step::APPROACH};
+use tailorbird_solver::{contact::solid::SolidKind, kernels::contact::Phase, step::APPROACH};
 
 use super::ClothColliders;
 use crate::{
@@ -33,7 +33,7 @@ macro_rules! collide_systems {
                 let substep = step.in_progress();
                 for_each_awake(&step, &mut cloths, &|mut cloth| {
                     cloth.with_cloth(|cloth| {
-                        (colliders.list).collide(Phase::Final, Some(&[Kind::$kind]), &substep, cloth);
+                        (colliders.list).collide(Phase::Final, Some(&[SolidKind::$kind]), &substep, cloth);
                     });
                 });
             }

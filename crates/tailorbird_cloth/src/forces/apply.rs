@@ -2,7 +2,10 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use tailorbird_solver::particles::{Input, Particles, State};
+use tailorbird_solver::{
+    particles::{Input, Particles, State},
+    topology::order::Given,
+};
 
 use super::{ClothForces, Impulse};
 use crate::{
@@ -60,14 +63,14 @@ pub fn apply_forces(
         let len = particles.len();
         for &(particle, force) in &forces.forces {
             if check("ClothForces.force", particle, force, len) {
-                let i = particles.order.stored(particle) as usize;
+                let i = particles.order.stored(Given(particle)).index();
                 let acceleration = frame.vector_to_frame(force) * particles.0.input.inv_mass[i];
                 particles.0.accelerations().add(i, acceleration);
             }
         }
         for &(particle, acceleration) in &forces.accelerations {
             if check("ClothForces.acceleration", particle, acceleration, len) {
-                let i = particles.order.stored(particle) as usize;
+                let i = particles.order.stored(Given(particle)).index();
                 particles
                     .0
                     .accelerations()

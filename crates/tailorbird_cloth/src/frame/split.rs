@@ -28,7 +28,7 @@ pub(super) fn split_like(
     (known, rotation): (Vec3, Quat),
 ) -> Result<(Isometry3d, Vec3), ClothErrorKind> {
     let (place, scale) = split(transform)?;
-    let ways = [Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+    let candidates = [Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
         if axis == Vec3::ONE {
             (place.rotation, scale)
         } else {
@@ -39,14 +39,16 @@ pub(super) fn split_like(
     });
     let mirrors = |like: Vec3| {
         let signs = like.signum();
-        ways.into_iter().find(|(_, scale)| scale.signum() == signs)
+        candidates
+            .into_iter()
+            .find(|(_, scale)| scale.signum() == signs)
     };
-    let near = |way: &(Quat, Vec3)| way.0.dot(rotation).abs();
+    let near = |candidate: &(Quat, Vec3)| candidate.0.dot(rotation).abs();
     let (rotation, scale) = mirrors(wanted)
         .or_else(|| mirrors(known))
         .unwrap_or_else(|| {
             let nearest = |a: (Quat, Vec3), b| if near(&b) > near(&a) + 1e-3 { b } else { a };
-            ways.into_iter().fold(ways[0], nearest)
+            candidates.into_iter().fold(candidates[0], nearest)
         });
     Ok((Isometry3d::new(place.translation, rotation), scale))
 }

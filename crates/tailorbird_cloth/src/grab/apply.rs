@@ -7,6 +7,7 @@ use bevy_math::Vec3;
 use tailorbird_solver::{
     held::{Held, HeldBy, HolderKind},
     particles::Pulled,
+    topology::order::{Given, Stored},
 };
 
 use super::ClothGrab;
@@ -69,7 +70,7 @@ pub fn apply_grab(
                 particles.0.input.pulled.clear();
                 let is_held = particles.is_held(hand.particle as usize);
                 let in_hand = (!is_held).then(|| Held {
-                    particle: order.stored(hand.particle),
+                    particle: order.stored(Given(hand.particle)),
                     // Where the frame will be when the hand is reached.
                     by: HeldBy::Hand(frame.to_frame_at_end(hand.target)),
                 });
@@ -77,7 +78,7 @@ pub fn apply_grab(
                 if !is_held {
                     particles.0.input.pulled.extend(patch.iter().map(
                         |&(particle, weight, offset)| Pulled {
-                            particle: order.stored(particle),
+                            particle: order.stored(Given(particle)),
                             offset,
                             weight,
                         },
@@ -107,8 +108,8 @@ fn patch(
     particles: &ClothParticles,
 ) -> Vec<(u32, f32, Vec3)> {
     let order = &particles.order;
-    let rest = |i: u32| topology.rest_positions[i as usize];
-    let center = order.stored(center);
+    let rest = |i: Stored| topology.rest_positions[i.index()];
+    let center = order.stored(Given(center));
     let ring = topology
         .neighbors(center)
         .iter()
@@ -116,7 +117,7 @@ fn patch(
         .fold(0.0, f32::max);
     // Beyond the first ring, so that the weight there is not 0.
     let radius = radius.max(1.5 * ring);
-    let held_at = particles.0.state.position.get(center as usize);
+    let held_at = particles.0.state.position.get(center.index());
     let mut seen = vec![center];
     let mut queue = VecDeque::from([center]);
     let mut patch = Vec::new();
@@ -126,8 +127,8 @@ fn patch(
             if weight > 0.0 && !seen.contains(&particle) {
                 seen.push(particle);
                 queue.push_back(particle);
-                let offset = particles.0.state.position.get(particle as usize) - held_at;
-                patch.push((order.given(particle), weight, offset));
+                let offset = particles.0.state.position.get(particle.index()) - held_at;
+                patch.push((order.given(particle).0, weight, offset));
             }
         }
     }

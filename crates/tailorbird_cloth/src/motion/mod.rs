@@ -52,7 +52,7 @@ mod samples;
 use bevy_ecs::{change_detection::Tick, prelude::*};
 use bevy_math::Vec3;
 use bevy_reflect::prelude::*;
-use tailorbird_solver::limits::MotionLimits;
+use tailorbird_solver::{limits::MotionLimits, topology::order::Stored};
 
 pub use prepare::prepare_motion;
 pub(crate) use samples::{begin_fixed_targets, end_fixed_targets, see_targets};
@@ -301,7 +301,7 @@ pub struct ClothMotionState {
     pub(crate) limits: MotionLimits,
     /// Particles whose largest distance is 0.
     #[reflect(ignore)]
-    held: Vec<u32>,
+    held: Vec<Stored>,
     /// True if the targets move in this step.
     moving: bool,
     disturbed: bool,

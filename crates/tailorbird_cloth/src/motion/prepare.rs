@@ -9,7 +9,10 @@ use tailorbird_solver::{
     memory::heap,
     numbers::Numbers,
     points::Points,
-    topology::Topology,
+    topology::{
+        Topology,
+        order::{Given, Stored},
+    },
 };
 
 use super::{
@@ -136,9 +139,12 @@ pub fn prepare_motion(
             } else {
                 0.0
             };
-            let way = Vec3::X * furthest;
+            let displacement = Vec3::X * furthest;
             let speed = settings.valid_teleport_speed();
-            elsewhere |= motion.hops.is_hop(way, step.world_seconds(), speed) && fixed;
+            elsewhere |= motion
+                .hops
+                .is_hop(displacement, step.world_seconds(), speed)
+                && fixed;
             if elsewhere && motion.moving {
                 motion.take_along(&mut particles);
                 motion.stay();
@@ -150,7 +156,7 @@ pub fn prepare_motion(
         }
         let held = &motion.held;
         let order = particles.order.clone();
-        let unpinned = |&i: &u32| !particles.is_pinned(order.given(i) as usize);
+        let unpinned = |&i: &Stored| !particles.is_pinned(order.given(i).index());
         let wanted = held.iter().copied().filter(unpinned);
         let limited = particles.input.held.of(HolderKind::Limit);
         // No memory is needed where nothing changed.
@@ -188,7 +194,7 @@ impl ClothMotionState {
 
     /// Reads valid constraints. Returns whether they are others than before.
     fn read(&mut self, constraints: &ClothMotionConstraints, topology: &Topology) -> bool {
-        let given = |i| topology.order.given(i as u32) as usize;
+        let given = |i| topology.order.given(Stored(i as u32)).index();
         let stored = |values: &ClothPerParticle, none: f32| -> Numbers {
             let value = |i| values.get(given(i)).unwrap_or(none);
             (0..topology.particles()).map(value).collect()
@@ -204,7 +210,7 @@ impl ClothMotionState {
         let held = max_distance.iter().enumerate();
         self.held = held
             .filter(|(_, most)| **most == 0.0)
-            .map(|(i, _)| i as u32)
+            .map(|(i, _)| Stored(i as u32))
             .collect();
         let [distance, radius] = backstop;
         let limits = &mut self.limits;
@@ -271,7 +277,7 @@ impl ClothMotionState {
             }),
         };
         for i in 0..targets.positions[0].len() {
-            let stored = topology.order.stored(i as u32) as usize;
+            let stored = topology.order.stored(Given(i as u32)).index();
             self.limits.targets[1].set(stored, point(targets.position(i)));
         }
         if targets.normals[0].is_empty() {
@@ -281,7 +287,7 @@ impl ClothMotionState {
             }
         } else {
             for i in 0..targets.normals[0].len() {
-                let stored = topology.order.stored(i as u32) as usize;
+                let stored = topology.order.stored(Given(i as u32)).index();
                 let normal = vector(targets.normal(i)).normalize_or_zero();
                 self.limits.normals[1].set(stored, normal);
             }

@@ -15,7 +15,7 @@ use crate::{
     settings::ClothSettings,
 };
 
-/// Targets at a moment: a part of the way between two frames.
+/// Targets at a moment: a part of the time between two frames.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetsAt<'a> {
     pub positions: [&'a [Vec3]; 2],
@@ -143,8 +143,9 @@ impl ClothTargetSamples {
 
     /// Largest displacement of a target \[m\].
     fn furthest(&self, targets: &ClothMotionTargets) -> f32 {
-        let ways = self.seen[0].positions.iter().zip(&targets.positions);
-        ways.map(|(from, to)| from.distance_squared(*to))
+        let pairs = self.seen[0].positions.iter().zip(&targets.positions);
+        pairs
+            .map(|(from, to)| from.distance_squared(*to))
             .fold(0.0, f32::max)
             .sqrt()
     }
@@ -167,10 +168,10 @@ impl ClothMotionState {
         } = &mut particles.0;
         let free = (0..position.len()).filter(|&i| inv_mass[i] > 0.0);
         let limited = held.of(HolderKind::Limit).iter();
-        for i in free.chain(limited.map(|held| held.particle as usize)) {
-            let way = end.get(i) - start.get(i);
+        for i in free.chain(limited.map(|held| held.particle.index())) {
+            let displacement = end.get(i) - start.get(i);
             for points in [&mut *position, &mut *previous_position, &mut *step_position] {
-                points.add(i, way);
+                points.add(i, displacement);
             }
         }
     }
@@ -204,8 +205,8 @@ pub(crate) fn see_targets(
             FrameKind::Still => true,
             FrameKind::Hitch => !samples.are_fixed(),
             FrameKind::Passed(seconds) => {
-                let way = Vec3::X * samples.furthest(&targets);
-                samples.hops.is_hop(way, seconds, speed) && !samples.are_fixed()
+                let displacement = Vec3::X * samples.furthest(&targets);
+                samples.hops.is_hop(displacement, seconds, speed) && !samples.are_fixed()
             }
         };
         if changed || elsewhere {

@@ -2,7 +2,10 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use tailorbird_solver::held::{Held, HeldBy, HolderKind};
+use tailorbird_solver::{
+    held::{Held, HeldBy, HolderKind},
+    topology::order::Given,
+};
 
 use super::ClothPins;
 use crate::{
@@ -48,7 +51,7 @@ pub fn apply_pins(
             }
             match pin.selection.particles(&topology) {
                 Ok(selected) => {
-                    held.extend(selected.into_iter().map(|particle| (particle, pin.target)));
+                    held.extend(selected.into_iter().map(|i| (Given(i), pin.target)));
                 }
                 Err(error) => errors.push(error),
             }
@@ -81,13 +84,13 @@ pub fn apply_pins(
 
 impl ClothParticles {
     /// Replaces the pins. A particle that was pinned before without a target of its own stays where it was held.
-    fn set_pins(&mut self, pins: &[(u32, Option<Vec3>)]) {
+    fn set_pins(&mut self, pins: &[(Given, Option<Vec3>)]) {
         let before = self.0.input.held.of(HolderKind::Pin);
-        let place = |particle: u32| {
+        let place = |particle: Given| {
             let at = before.binary_search_by_key(&particle, |pin| self.order.given(pin.particle));
             match at.map(|at| before[at].by) {
                 Ok(HeldBy::Pin(place)) => place,
-                _ => self.position(particle as usize),
+                _ => self.position(particle.index()),
             }
         };
         let mut held: Vec<Held> = pins

@@ -67,7 +67,7 @@ pub(crate) struct Moment {
     pub frames: [usize; 4],
     /// The times between the four \[s\].
     pub gaps: [f32; 3],
-    /// The part of the way between the last two, 0 to 1.
+    /// The part of the time between the last two, 0 to 1.
     pub part: f32,
 }
 
@@ -172,8 +172,8 @@ impl ClothFrameClock {
         let [late, later] = self.delay;
         let (from, to) = (start - late, end - later);
         let passed = (nanoseconds(time) - start).clamp(0, (end - start).max(0));
-        let way = i128::from(to - from) * i128::from(passed) / i128::from((end - start).max(1));
-        let moment = from + way as i64;
+        let elapsed = i128::from(to - from) * i128::from(passed) / i128::from((end - start).max(1));
+        let moment = from + elapsed as i64;
         let known = &self.times[..self.known];
         let oldest = self.known.saturating_sub(1);
         let found = known.iter().position(|time| *time <= moment);
@@ -271,11 +271,11 @@ mod tests {
                     let now = time(&clock, moment);
                     prop_assert!(now <= clock.times[0] as f64 + 8.0);
                     if let Some(last) = last {
-                        let way = now - last;
-                        prop_assert!(way >= -8.0, "{way}");
+                        let advance = now - last;
+                        prop_assert!(advance >= -8.0, "{advance}");
                         // Unless the frames become so short that the memory ends.
                         if k > DEPTH && clock.delay[1] < end - clock.times[DEPTH - 1] {
-                            prop_assert!(way <= 2.0 * step as f64 + 8.0, "{way} {step}");
+                            prop_assert!(advance <= 2.0 * step as f64 + 8.0, "{advance} {step}");
                         }
                     }
                     last = Some(now);

@@ -1,4 +1,4 @@
-//! The way between the places that were seen: without kinks, where there were none.
+//! The path between the places that were seen: without kinks, where there were none.
 
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
@@ -8,7 +8,7 @@ use super::clock::Moment;
 /// Number of places that a curve goes by.
 pub(super) const PLACES: usize = 4;
 
-/// A point of the curve through the last two of four values, at a part of the way between them.
+/// A point of the curve through the last two of four values, at a part of the path between them.
 ///
 /// A cubic (Hermite) whose slopes at both ends are those of the parabolas through these ends and the two values before, so that nothing
 /// after them need be known, and that one piece begins as the one before ended: straight lines would jolt cloth at each frame. A slope is
@@ -20,10 +20,10 @@ fn cubic(values: [Vec3; PLACES], [before, last, gap]: [f32; 3], part: f32) -> Ve
     if chord == Vec3::ZERO || gap <= 0.0 {
         return from;
     }
-    // Ways within the gap.
-    let slope = |way: Vec3, time: f32| {
+    // Displacements within the gap.
+    let slope = |displacement: Vec3, time: f32| {
         if time > 0.0 {
-            way * (gap / time)
+            displacement * (gap / time)
         } else {
             Vec3::ZERO
         }

@@ -16,13 +16,13 @@ pub struct ClothHopDetector {
 }
 
 impl ClothHopDetector {
-    /// Takes a way \[m\] that took some time \[s\], and tells whether it is a hop: whether the velocity in it differs from the
+    /// Takes a displacement \[m\] that took some time \[s\], and tells whether it is a hop: whether the velocity in it differs from the
     /// one before by more than that one's magnitude and `speed` [m/s]. A second one like it is motion.
-    pub fn is_hop(&mut self, way: Vec3, seconds: f32, speed: f32) -> bool {
+    pub fn is_hop(&mut self, displacement: Vec3, seconds: f32, speed: f32) -> bool {
         if seconds <= 0.0 {
             return false;
         }
-        let velocity = way / seconds;
+        let velocity = displacement / seconds;
         let differs = |from: Vec3| velocity.distance(from) > speed + from.length();
         let hop = differs(self.velocity) && self.suspect.is_none_or(differs);
         if hop {
@@ -104,15 +104,16 @@ mod tests {
 
     const SPEED: f32 = 30.0;
 
-    fn hops(ways: &[f32], seconds: f32) -> Vec<bool> {
+    fn hops(displacements: &[f32], seconds: f32) -> Vec<bool> {
         let mut detector = ClothHopDetector::default();
-        ways.iter()
-            .map(|way| detector.is_hop(Vec3::X * *way, seconds, SPEED))
+        displacements
+            .iter()
+            .map(|displacement| detector.is_hop(Vec3::X * *displacement, seconds, SPEED))
             .collect()
     }
 
     #[test]
-    fn a_way_of_two_metres_is_a_hop_at_all_rates_and_running_is_none() {
+    fn a_displacement_of_two_metres_is_a_hop_at_all_rates_and_running_is_none() {
         for hz in [20.0, 30.0, 60.0, 144.0f32] {
             let run = 5.0 / hz;
             assert_eq!(

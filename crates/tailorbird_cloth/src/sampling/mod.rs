@@ -123,7 +123,7 @@ pub struct ClothSampledMotion {
 }
 
 impl ClothSampledMotion {
-    /// The entity is put elsewhere: whatever way it goes until the next step carries what cloth it holds, and is not felt.
+    /// The entity is put elsewhere: wherever it goes until the next step carries what cloth it holds, and is not felt.
     pub fn teleport(&mut self) {
         self.asked = true;
     }
@@ -149,11 +149,11 @@ impl ClothSampledMotion {
     }
 
     /// Takes what is known along where it was put elsewhere.
-    fn take_along(&mut self, way: [&Transform; 2]) {
+    fn take_along(&mut self, ends: [&Transform; 2]) {
         for frame in &mut self.frames {
-            take_along(frame, way);
+            take_along(frame, ends);
         }
-        take_along(&mut self.now, way);
+        take_along(&mut self.now, ends);
     }
 
     /// Motion from one frame to the next, without that of the fixed loop.

@@ -30,7 +30,7 @@ use crate::{
 };
 
 /// After this time at rest a cloth begins to settle \[s\].
-const CALM: f32 = 0.5;
+const SETTLES: f32 = 0.5;
 
 /// After this time at rest it has settled \[s\].
 const SETTLED: f32 = 1.0;
@@ -225,7 +225,7 @@ impl ClothStagesItem<'_, '_> {
         wind: &ClothWindState,
         colliders: &ClothColliders,
     ) {
-        if self.rest.seconds < CALM {
+        if self.rest.seconds < SETTLES {
             return;
         }
         let place = (&*self.frame, &*self.bounds);
@@ -246,6 +246,6 @@ impl ClothStagesItem<'_, '_> {
 
 /// The part of its motion in a step that a cloth keeps which has been at rest for so long \[s\].
 fn part_kept(seconds: f32) -> f32 {
-    let x = (seconds - CALM) / (SETTLED - CALM);
+    let x = (seconds - SETTLES) / (SETTLED - SETTLES);
     1.0 - x.clamp(0.0, 1.0) * (1.0 - KEPT)
 }

@@ -58,7 +58,7 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
 use tailorbird_solver::{coefficients::Method, topology::Topology};
 
-pub use stages::{calm_knots, solve_constraints, verlet_step};
+pub use stages::{damp_tangles, solve_constraints, verlet_step};
 
 /// Method by which the constraints of a cloth are solved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]

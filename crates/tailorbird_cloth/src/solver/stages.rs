@@ -1,7 +1,7 @@
 //! The stages that move particles, and hold them together.
 
 use bevy_ecs::prelude::*;
-use tailorbird_solver::step::{CALM, INTEGRATE, SOLVE};
+use tailorbird_solver::step::{DAMP, INTEGRATE, SOLVE};
 
 use crate::{
     cloth::Cloth,
@@ -29,10 +29,10 @@ pub fn solve_constraints(
     run_stage(SOLVE, &step, &colliders, &mut cloths);
 }
 
-/// Calms what is wound up in itself, after the last substep: see [`ClothSolver::Chains`](super::ClothSolver::Chains).
-pub fn calm_knots(
+/// Damps tangles, after the last substep: see [`ClothSolver::Chains`](super::ClothSolver::Chains).
+pub fn damp_tangles(
     (step, colliders): (Res<ClothStep>, Res<ClothColliders>),
     mut cloths: Query<ClothStages, With<Cloth>>,
 ) {
-    run_stage(CALM, &step, &colliders, &mut cloths);
+    run_stage(DAMP, &step, &colliders, &mut cloths);
 }

@@ -1,4 +1,4 @@
-//! Measures the ways to what is held.
+//! Measures the distances along the sheet from what is held.
 
 use bevy_ecs::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::{
     topology::ClothTopology,
 };
 
-/// Measures the ways to the pins anew where the pins changed: see [`Tethers::build`](tailorbird_solver::tethers::Tethers::build). Particles that are attached rigidly, or held at their
+/// Measures the distances from the pins anew where the pins changed: see [`Tethers::build`](tailorbird_solver::tethers::Tethers::build). Particles that are attached rigidly, or held at their
 /// targets, count as pins; those at springs do not.
 pub fn build_tethers(
     step: Res<ClothStep>,

@@ -276,7 +276,7 @@ impl ClothWindState {
             0.0
         };
         if varies {
-            // Velocities are ways since the substep before: the air's own way is added to where a particle was.
+            // Velocities are displacements since the substep before: that of the air is added to where a particle was.
             if per_second == 0.0 {
                 per_second = step.seconds().recip();
             }

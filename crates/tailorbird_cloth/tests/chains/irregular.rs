@@ -1,8 +1,9 @@
 //! Cloths that are triangle meshes, in a whole app.
 
 use bevy_math::{UVec2, Vec2, Vec3};
-use tailorbird_cloth::prelude::*;
-use tailorbird_test::{G, Scene, Sheet};
+use bevy_transform::components::Transform;
+use tailorbird_cloth::{attachment::ClothAttachedParticles, prelude::*, topology::order::Given};
+use tailorbird_test::{G, Scene, Sheet, Sim};
 
 use crate::test_meshes::{delaunay, grid, hash, shuffle};
 
@@ -114,8 +115,7 @@ fn users_keep_their_numbers() {
             assert_eq!(particles.position(i as usize), rest[i as usize]);
         }
         assert_eq!(particles.closest_particle(rest[77]).map(|c| c.0), Some(77));
-        let stored =
-            |vertex: usize| sheet.get::<ClothTopology>().particle_of_vertex(vertex) as usize;
+        let stored = |vertex| sheet.get::<ClothTopology>().particle_of_vertex(vertex);
         for vertex in [0, 9, 250] {
             let drawn = particles.interpolated(stored(vertex), 1.0);
             assert_eq!(drawn, particles.position(vertex));
@@ -227,5 +227,39 @@ fn a_rolled_sheet_keeps_its_shape_in_free_flight() {
     for (i, p) in positions.iter().enumerate() {
         let moved = sheet.particles().position(i).distance(*p);
         assert!(moved < 1e-6, "{i}: {moved} m");
+    }
+}
+
+/// Threads are found anew, in another order, where a scale is another along warp and weft.
+#[test]
+fn attached_particles_of_a_mesh_that_grows_keep_their_own_points() {
+    let mut sim = Sim::vacuum().without_gravity();
+    let cloth = sim.spawn(irregular());
+    let hand = sim.spawn(Transform::default());
+    let band = ClothSelection::Within {
+        center: Vec3::new(0.5, 0.0, 0.0),
+        radius: 0.5,
+    };
+    sim.attach(cloth, hand, ClothAttachment::new(band));
+    sim.steps(1);
+    let order = |sim: &Sim| {
+        let order = sim.particles(cloth).order().clone();
+        (0..SIDE * SIDE).map(move |i| order.stored(Given(i as u32)))
+    };
+    let (before, order_before) = (sim.positions(cloth), order(&sim));
+    let held: Vec<usize> = sim
+        .get::<ClothAttachedParticles>(cloth)
+        .rigid()
+        .map(|point| point.particle as usize)
+        .collect();
+    let ratio = Vec3::new(1.0, 1.5, 1.0);
+    sim.edit::<Transform>(cloth, |place| place.scale = ratio);
+    sim.steps(1);
+    assert!(!order_before.eq(order(&sim)), "threads in another order");
+    let about = held.iter().map(|i| before[*i]).sum::<Vec3>() / held.len() as f32;
+    for i in held {
+        let expected = about + ratio * (before[i] - about);
+        let at = sim.at(cloth, i);
+        assert!(at.distance(expected) < 1e-5, "{i}: {at} {expected}");
     }
 }

@@ -32,9 +32,9 @@ fn strain(cloth: Cloth, tension: f32, material: ClothMaterial, substeps: u32) ->
     });
     let ends = [(within(-1.0, 0.03), -1.0), (within(0.97, 2.0), 1.0)];
     for _ in 0..300 {
-        for (end, way) in &ends {
+        for (end, sign) in &ends {
             let mass: f32 = end.iter().map(|i| strip.particles().mass(*i)).sum();
-            let pull = Vec3::Y * (way * tension * width / mass);
+            let pull = Vec3::Y * (sign * tension * width / mass);
             strip.change(|forces: &mut ClothForces| {
                 for i in end {
                     forces.add_acceleration(*i as u32, pull);

@@ -149,8 +149,11 @@ fn a_surface_that_moves_takes_cloth_along() {
     let start = sheet.world_positions();
     sheet.steps(60);
     for (from, to) in start.iter().zip(sheet.world_positions()) {
-        let way = to - *from;
-        assert!((way.x - SPEED).abs() < 1e-4 && way.y.abs() < 1e-4, "{way}");
+        let displacement = to - *from;
+        assert!(
+            (displacement.x - SPEED).abs() < 1e-4 && displacement.y.abs() < 1e-4,
+            "{displacement}"
+        );
     }
 }
 

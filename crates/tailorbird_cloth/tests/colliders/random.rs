@@ -161,8 +161,9 @@ fn nearest(corners: [DVec3; 3], p: DVec3) -> DVec3 {
         return p - normal * normal.dot(p - a);
     }
     let on = |(from, to): (DVec3, DVec3)| {
-        let way = to - from;
-        from + way * ((p - from).dot(way) / way.length_squared()).clamp(0.0, 1.0)
+        let displacement = to - from;
+        from + displacement
+            * ((p - from).dot(displacement) / displacement.length_squared()).clamp(0.0, 1.0)
     };
     let sides = [(a, b), (b, c), (c, a)].map(on);
     let nearer = |q: DVec3, r: DVec3| if p.distance(q) < p.distance(r) { q } else { r };

@@ -342,7 +342,7 @@ proptest! {
     /// Wherever a target goes, however it turns, its particles are there, and the rest stays finite.
     #[test]
     fn particles_are_where_their_target_is(
-        ways in prop::collection::vec(([-3.0f32..3.0, -3.0f32..3.0, -3.0f32..3.0], -3.0f32..3.0), 1..12),
+        places in prop::collection::vec(([-3.0f32..3.0, -3.0f32..3.0, -3.0f32..3.0], -3.0f32..3.0), 1..12),
     ) {
         let mut world = vacuum();
         let hand = world.spawn(Transform::default());
@@ -350,7 +350,7 @@ proptest! {
         let points = [Vec3::ZERO, Vec3::X * 0.3];
         world.attach(cloth, hand, ClothAttachment::particles([0, 7]).with_points(points));
         world.steps(1);
-        for (at, angle) in ways {
+        for (at, angle) in places {
             let to = Transform::from_translation(at.into()).with_rotation(Quat::from_rotation_y(angle));
             world.move_to(hand, to);
             world.steps(1);

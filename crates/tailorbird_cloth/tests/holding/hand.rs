@@ -21,15 +21,17 @@ fn a_hand_lifts_a_sheet_of_any_resolution() {
         world.steps(120);
         let middle = n * (n / 2) + n / 2;
         let from = world.at(cloth, middle as usize);
-        let way = Vec3::new(0.1, 0.3, 0.0);
+        let displacement = Vec3::new(0.1, 0.3, 0.0);
         world.edit::<ClothGrab>(cloth, |grab| grab.take(middle, 0.08, from));
         for step in 1..=60 {
-            let target = from + way * step as f32 / 60.0;
+            let target = from + displacement * step as f32 / 60.0;
             world.edit::<ClothGrab>(cloth, |grab| grab.move_to(target));
             world.steps(1);
         }
         world.steps(60);
-        let left = world.at(cloth, middle as usize).distance(from + way);
+        let left = world
+            .at(cloth, middle as usize)
+            .distance(from + displacement);
         assert!(left < 0.004, "{n}: {left}");
         let stretch = world.stretch(cloth).max;
         assert!(stretch < 0.07, "{n}: {stretch}");

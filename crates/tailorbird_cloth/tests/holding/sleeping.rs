@@ -77,8 +77,11 @@ fn it_follows_a_target_that_creeps() {
                 world.steps(1);
             }
             for (from, to) in before.iter().zip(places(&world)) {
-                let way = to - *from;
-                assert!(way.distance(Vec3::Y * 5e-3) < 5e-4, "{way} from {from}");
+                let displacement = to - *from;
+                assert!(
+                    displacement.distance(Vec3::Y * 5e-3) < 5e-4,
+                    "{displacement} from {from}"
+                );
             }
         }
     }

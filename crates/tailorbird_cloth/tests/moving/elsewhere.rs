@@ -69,8 +69,8 @@ fn a_hop_of_two_metres_stretches_nothing_and_is_told() {
                 // Nothing but the place is another one.
                 let (a, b) = (hops.steps.last().unwrap(), runs.steps.last().unwrap());
                 for (a, b) in a.iter().zip(b) {
-                    let way = *a - *b - Vec3::new(2.0, 0.0, 2.0);
-                    assert!(way.length() < 2e-5, "{name}: {way}");
+                    let displacement = *a - *b - Vec3::new(2.0, 0.0, 2.0);
+                    assert!(displacement.length() < 2e-5, "{name}: {displacement}");
                 }
             }
         }

@@ -68,7 +68,7 @@ fn what_moved_meanwhile_is_not_felt() {
     for fps in RATES {
         for held in HELD {
             for why in ALL {
-                for way in [0.5, 2.0] {
+                for displacement in [0.5, 2.0] {
                     let mut game = game(fps, 60.0);
                     let (cloth, body) = spawn_cape(&mut game, held);
                     game.seconds(2.0);
@@ -76,10 +76,10 @@ fn what_moved_meanwhile_is_not_felt() {
                     stop(&mut game, cloth, why, true);
                     game.frames(3);
                     // At once, and then bit by bit.
-                    game.shift(body, Vec3::X * 0.8 * way);
+                    game.shift(body, Vec3::X * 0.8 * displacement);
                     for _ in 0..10 {
                         game.frames(1);
-                        game.shift(body, Vec3::X * 0.02 * way);
+                        game.shift(body, Vec3::X * 0.02 * displacement);
                     }
                     game.frames(3);
                     stop(&mut game, cloth, why, false);
@@ -90,11 +90,14 @@ fn what_moved_meanwhile_is_not_felt() {
                         speed = speed.max(game.fastest(cloth));
                     }
                     let film = film(&mut game);
-                    let name = format!("{fps} {held:?} {why:?} {way}");
+                    let name = format!("{fps} {held:?} {why:?} {displacement}");
                     assert!(speed < 1e-3, "{name}: {speed} m/s");
                     assert!(film.stretch() < 2e-4, "{name}: {}", film.stretch());
                     let moved = game.at(cloth, 300) - before;
-                    assert!(moved.distance(Vec3::X * way) < 1e-5, "{name}: {moved}");
+                    assert!(
+                        moved.distance(Vec3::X * displacement) < 1e-5,
+                        "{name}: {moved}"
+                    );
                 }
             }
         }
@@ -115,9 +118,9 @@ fn targets_that_moved_meanwhile_are_not_felt() {
                 ClothMotionTargets::in_space(space),
             ));
             let rest = game.get::<Cloth>(cloth).rest_positions();
-            let aim = |game: &mut Sim, way: Vec3| {
+            let aim = |game: &mut Sim, displacement: Vec3| {
                 game.edit::<ClothMotionTargets>(cloth, |targets| {
-                    targets.set_positions(rest.iter().map(|p| *p + way));
+                    targets.set_positions(rest.iter().map(|p| *p + displacement));
                 });
             };
             aim(&mut game, Vec3::ZERO);

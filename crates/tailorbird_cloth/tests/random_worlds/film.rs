@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use tailorbird_cloth::prelude::*;
+use tailorbird_cloth::{prelude::*, topology::order::Given};
 
 use crate::world::Shape;
 
@@ -149,7 +149,7 @@ pub fn film(
         let rest = &topology.rest_positions;
         let order = particles.order();
         let all: Vec<usize> = (0..places.len()).filter(|i| held[*i]).collect();
-        let stored = |i: usize| rest[order.stored(i as u32) as usize];
+        let stored = |i: usize| rest[order.stored(Given(i as u32)).index()];
         for (k, &a) in all.iter().enumerate() {
             for &b in &all[..k] {
                 let times = places[a].distance(places[b]) / stored(a).distance(stored(b));

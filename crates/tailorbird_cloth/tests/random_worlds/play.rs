@@ -19,7 +19,7 @@ const NOBODY: ClothLayers = ClothLayers::new(0, 0);
 /// Time for which a collider flies that appears with a velocity \[s\].
 const FLIGHT: f32 = 0.5;
 
-/// The farthest way of a half-space \[m\].
+/// The largest displacement of a half-space \[m\].
 const BURIED: f32 = 1.0;
 
 /// An entity on its way.
@@ -28,7 +28,7 @@ struct Mover {
     /// Transform at the start.
     rest: Transform,
     /// Displacement from there now, and its goal \[m\].
-    way: [Vec3; 2],
+    displacement: [Vec3; 2],
     /// [m/s].
     speed: f32,
     /// Rotation vectors.
@@ -60,7 +60,7 @@ impl Mover {
         Self {
             entity,
             rest,
-            way: [Vec3::ZERO; 2],
+            displacement: [Vec3::ZERO; 2],
             speed: 0.0,
             turn: [Vec3::ZERO; 2],
             turning: 0.0,
@@ -68,23 +68,23 @@ impl Mover {
     }
 
     fn go(&mut self, by: Vec3, speed: f32) {
-        self.way[1] = self.way[0] + by;
+        self.displacement[1] = self.displacement[0] + by;
         self.speed = speed;
     }
 
     fn stop(&mut self) {
-        (self.way[1], self.turn[1]) = (self.way[0], self.turn[0]);
+        (self.displacement[1], self.turn[1]) = (self.displacement[0], self.turn[0]);
     }
 
     /// Transform after so many seconds more.
     fn advance(&mut self, seconds: f32) -> Transform {
         let toward = |[from, to]: [Vec3; 2], most: f32| from.move_towards(to, most);
         if seconds > 0.0 {
-            self.way[0] = toward(self.way, self.speed * seconds);
+            self.displacement[0] = toward(self.displacement, self.speed * seconds);
             self.turn[0] = toward(self.turn, self.turning * seconds);
         }
         Transform {
-            translation: self.rest.translation + self.way[0],
+            translation: self.rest.translation + self.displacement[0],
             rotation: (Quat::from_scaled_axis(self.turn[0]) * self.rest.rotation).normalize(),
             scale: self.rest.scale,
         }
@@ -129,7 +129,7 @@ fn held(grip: &Grip, size: Vec2, rest: &[Vec3]) -> Vec<u32> {
 
 impl Shape {
     /// Displacement for a wanted one: a half-space that goes far buries everything, and it takes long to come out.
-    fn way(&self, by: Vec3) -> Vec3 {
+    fn allowed(&self, by: Vec3) -> Vec3 {
         if matches!(self, Self::HalfSpace) {
             by.clamp_length_max(BURIED)
         } else {
@@ -216,7 +216,8 @@ impl Play {
                 match hold.by {
                     By::Pin => pins.pins.push(ClothPin::new(ClothSelection::Particle(i))),
                     By::Target => {
-                        let at = scale * self.rest[i as usize] + self.holders[*holder].way[0];
+                        let at =
+                            scale * self.rest[i as usize] + self.holders[*holder].displacement[0];
                         pins.pins.push(ClothPin::at(i, at));
                     }
                     By::Entity | By::Spring => {}
@@ -256,12 +257,12 @@ impl Play {
                 let entity = world.spawn((shape.collider(), at)).id();
                 let mut mover = Mover::new(entity, at);
                 let velocity = Vec3::from(velocity);
-                mover.go(shape.way(velocity * FLIGHT), velocity.length());
+                mover.go(shape.allowed(velocity * FLIGHT), velocity.length());
                 self.bodies.push((mover, shape));
             }
             Event::MoveBody { body, by, speed } => {
                 if let Some((body, shape)) = self.bodies.get_mut(body % bodies) {
-                    body.go(shape.way(by.into()), speed);
+                    body.go(shape.allowed(by.into()), speed);
                 }
             }
             Event::Vanish { body } => {
@@ -325,8 +326,11 @@ impl Play {
             }
         }
         self.pin(world);
-        let ways = self.holders.iter().map(|holder| holder.way[0].length());
-        let reach: f32 = ways.sum();
+        let distances = self
+            .holders
+            .iter()
+            .map(|holder| holder.displacement[0].length());
+        let reach: f32 = distances.sum();
         let mut film = world.resource_mut::<Film>();
         film.reach = film.reach.max(reach);
     }
@@ -339,7 +343,7 @@ impl Play {
     /// Moves a holder at once.
     pub fn shift(&mut self, world: &mut World, holder: usize, by: Vec3) {
         let mover = &mut self.holders[holder];
-        mover.way = mover.way.map(|at| at + by);
+        mover.displacement = mover.displacement.map(|at| at + by);
         self.place(world, 0.0);
     }
 

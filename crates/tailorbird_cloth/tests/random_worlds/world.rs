@@ -222,7 +222,7 @@ fn speed() -> impl Strategy<Value = f32> {
 
 fn event() -> impl Strategy<Value = Event> {
     let number = || 0usize..6;
-    let way = || prop_oneof![3 => vector(0.5), 2 => vector(3.0), 1 => vector(20.0)];
+    let displacement = || prop_oneof![3 => vector(0.5), 2 => vector(3.0), 1 => vector(20.0)];
     let turn = || vector(PI);
     let factor = || prop_oneof![Just(1f32), 0.5f32..2.0, -2f32..-0.5];
     let wind = prop_oneof![Just([0.0; 3]), vector(6.0), vector(57.0)];
@@ -232,17 +232,17 @@ fn event() -> impl Strategy<Value = Event> {
             .prop_map(|(velocity, turbulence)| Event::ClothWind { velocity, turbulence }),
         4 => (shape(), vector(1.5), turn(), velocity)
             .prop_map(|(shape, at, turn, velocity)| Event::Appear { shape, at, turn, velocity }),
-        2 => (number(), way(), speed())
+        2 => (number(), displacement(), speed())
             .prop_map(|(body, by, speed)| Event::MoveBody { body, by, speed }),
         1 => number().prop_map(|body| Event::Vanish { body }),
         1 => (number(), any::<bool>()).prop_map(|(body, meet)| Event::Layers { body, meet }),
-        5 => (number(), way(), speed())
+        5 => (number(), displacement(), speed())
             .prop_map(|(holder, by, speed)| Event::Move { holder, by, speed }),
         2 => (number(), turn(), speed())
             .prop_map(|(holder, by, speed)| Event::Turn { holder, by, speed }),
-        1 => (number(), way()).prop_map(|(holder, by)| Event::Teleport { holder, by }),
+        1 => (number(), displacement()).prop_map(|(holder, by)| Event::Teleport { holder, by }),
         1 => number().prop_map(|hold| Event::Release { hold }),
-        1 => (number(), way()).prop_map(|(holder, by)| Event::Pause { holder, by }),
+        1 => (number(), displacement()).prop_map(|(holder, by)| Event::Pause { holder, by }),
         1 => prop_oneof![
             factor().prop_map(|all| [all; 3]),
             [factor(), factor(), factor()],

@@ -43,8 +43,10 @@ fn a_velocity_spike_when_a_kinematic_vertex_is_applied_only_in_the_first_substep
     let mut sheet = noted(ClothPins::edges([ClothEdge::Top]));
     let rest: Vec<Vec3> = sheet.particles().positions().take(9).collect();
     for step in 1..=20u8 {
-        let way = Vec3::X * SPEED * DT * f32::from(step);
-        let pins = (0..).zip(&rest).map(|(i, p)| ClothPin::at(i, *p + way));
+        let displacement = Vec3::X * SPEED * DT * f32::from(step);
+        let pins = (0..)
+            .zip(&rest)
+            .map(|(i, p)| ClothPin::at(i, *p + displacement));
         let pins = pins.collect();
         sheet.change(|held: &mut ClothPins| held.pins = pins);
         sheet.step();
@@ -148,14 +150,14 @@ fn the_cloth_vanishing_after_an_extreme_move() {
             );
             // Something that is told to go through the sheet within a step, which nothing stops.
             let aside = |z: f32| Isometry3d::from_translation(Vec3::new(0.3, 0.2, z));
-            let way = far.min(1e4);
+            let displacement = far.min(1e4);
             let mut colliders = sheet.sim.resource_mut::<ClothExternalColliders>();
             colliders.push(external(
                 plate,
                 ClothColliderShape::Cuboid {
                     size: Vec3::new(0.8, 0.6, 0.02),
                 },
-                [aside(-way), aside(way)],
+                [aside(-displacement), aside(displacement)],
                 None,
             ));
             sheet.step();

@@ -10,7 +10,7 @@ use super::{
     cache::ContactCache,
 };
 use crate::{
-    cloth::Cloth,
+    cloth::ClothData,
     contact::colliders::{Colliders, MovingCollider, combined_friction},
     kernels::contact::Phase,
     particles::{Input, Particles, Scratch, State},
@@ -31,7 +31,7 @@ impl Colliders {
         (collider, index): (&MovingCollider, usize),
         phase: Phase,
         substep: &Substep,
-        cloth: &mut Cloth,
+        cloth: &mut ClothData,
         cache: &mut ContactCache,
     ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
@@ -105,7 +105,7 @@ impl Colliders {
     }
 
     /// Shares bodies out to the particles that are coupled with them, for the constraints.
-    pub fn share_out(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
+    pub fn share_out(&self, substep: &Substep, cloth: &mut ClothData, cache: &mut ContactCache) {
         let mut couplings = mem::take(&mut cache.couplings);
         // A particle that no longer comes near a collider touches it no more.
         couplings.retain(|coupling| self.find(coupling, cache).is_some());
@@ -157,7 +157,7 @@ impl Colliders {
     }
 
     /// Gives to bodies the impulses of the constraints on particles that are coupled with them.
-    pub fn hand_over(&self, substep: &Substep, cloth: &mut Cloth, cache: &mut ContactCache) {
+    pub fn hand_over(&self, substep: &Substep, cloth: &mut ClothData, cache: &mut ContactCache) {
         let mut couplings = mem::take(&mut cache.couplings);
         let frame = &*cloth.frame;
         let Particles {

@@ -12,10 +12,10 @@ pub mod surface;
 
 use std::mem;
 
-use solid::Kind;
+use solid::SolidKind;
 
 use crate::{
-    cloth::Cloth,
+    cloth::ClothData,
     coefficients::Method,
     contact::colliders::{Colliders, MovingCollider},
     kernels::contact::{Phase, Touch},
@@ -25,7 +25,7 @@ use crate::{
 
 impl Colliders {
     /// Pushes particles out of colliders before the constraints are solved, and notes contacts.
-    pub fn approach(&self, substep: &Substep, cloth: &mut Cloth) {
+    pub fn approach(&self, substep: &Substep, cloth: &mut ClothData) {
         let particles = &mut *cloth.particles;
         let bodies = &mut particles.scratch.cache.bodies;
         bodies.advance(&self.bodies, substep);
@@ -49,9 +49,9 @@ impl Colliders {
         cloth.particles.state.touch.any = cloth.particles.scratch.contacts.any;
     }
 
-    /// Keeps the particles of one cloth out of all colliders after the constraints were solved: kind by kind, in the order of [`Kind::ALL`].
-    pub fn collide_all(&self, substep: &Substep, cloth: &mut Cloth) {
-        self.collide(Phase::Final, Some(&Kind::ALL), substep, cloth);
+    /// Keeps the particles of one cloth out of all colliders after the constraints were solved: kind by kind, in the order of [`SolidKind::ALL`].
+    pub fn collide_all(&self, substep: &Substep, cloth: &mut ClothData) {
+        self.collide(Phase::Final, Some(&SolidKind::ALL), substep, cloth);
     }
 
     /// Keeps the particles of one cloth out of colliders: with `kinds` out of colliders of these kinds, kind by kind, as the systems of an
@@ -59,9 +59,9 @@ impl Colliders {
     pub fn collide(
         &self,
         phase: Phase,
-        kinds: Option<&[Kind]>,
+        kinds: Option<&[SolidKind]>,
         substep: &Substep,
-        cloth: &mut Cloth,
+        cloth: &mut ClothData,
     ) {
         let meant = |collider: &MovingCollider| {
             kinds.is_none_or(|kinds| kinds.contains(&collider.solid.kind()))
@@ -92,7 +92,7 @@ impl Colliders {
         let stage = (substep.level, (substep.index, phase == Phase::Final));
         let margin = cloth.coefficients.margin;
         cache.find_colliders(self, cloth.frame, layers, margin, stage, points);
-        for pass in 0..kinds.map_or(1, <[Kind]>::len) {
+        for pass in 0..kinds.map_or(1, <[SolidKind]>::len) {
             let kind = kinds.map(|kinds| kinds[pass]);
             for k in 0..cache.near.len() {
                 let Some(collider) = self.colliders.get(cache.near[k]) else {

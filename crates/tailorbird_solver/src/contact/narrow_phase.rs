@@ -7,11 +7,11 @@ use fearless_simd::Level;
 
 use super::{
     cache::{ContactCache, MeshPlanes},
-    planes::look,
+    planes::find_plane,
     solid::Solid,
 };
 use crate::{
-    cloth::Cloth,
+    cloth::ClothData,
     contact::colliders::{MovingCollider, combined_friction},
     frame::shortest,
     kernels::{
@@ -160,11 +160,11 @@ impl MovingCollider {
         &self,
         phase: Phase,
         substep: &Substep,
-        cloth: &mut Cloth,
+        cloth: &mut ClothData,
         cache: &mut ContactCache,
     ) {
         let (frame, material) = (&*cloth.frame, cloth.coefficients);
-        let poses = frame.way_to_frame(self.start, self.end, substep.fractions());
+        let poses = frame.path_in_frame(self.start, self.end, substep.fractions());
         let far = poses[0].translation.distance(poses[1].translation);
         if self.passes(far / substep.seconds, cache) {
             return;
@@ -218,7 +218,7 @@ impl MovingCollider {
         particles.state.touch.colliders += usize::from(touches && phase == Phase::Approach);
         particles.state.touch.overlaps |= overlaps.load(Ordering::Relaxed);
         if let Some((held, _)) = particles.input.held.in_hand() {
-            self.collide_held(held as usize, &motion, margin, particles, cache);
+            self.collide_held(held.index(), &motion, margin, particles, cache);
         }
     }
 
@@ -319,7 +319,7 @@ impl MovingCollider {
             if let Some(MeshPlanes { patches, .. }) = planes
                 && i < patches.holds.len()
             {
-                look(surface, patches, motion, particles, i, margin);
+                find_plane(surface, patches, motion, particles, i, margin);
             } else {
                 return;
             }

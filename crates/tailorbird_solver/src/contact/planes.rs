@@ -79,13 +79,13 @@ impl MovingCollider {
             |i| found.push(i),
         );
         for &i in &*found {
-            look(surface, patches, motion, particles, i, margin);
+            find_plane(surface, patches, motion, particles, i, margin);
         }
     }
 }
 
 /// Finds the contact plane of a particle with a mesh.
-pub fn look(
+pub fn find_plane(
     surface: &Surface,
     patches: &mut Patches,
     motion: &Motion,
@@ -96,5 +96,5 @@ pub fn look(
     let inverse = motion.axes.transpose();
     let from = inverse * (motion.turn * (particles.state.previous_position.get(i) - motion.from));
     let to = inverse * (particles.state.position.get(i) - motion.to);
-    surface.look(patches, i, [from, to], margin);
+    surface.find_plane(patches, i, [from, to], margin);
 }

@@ -28,7 +28,7 @@ impl fmt::Debug for Solid {
 
 /// Kind of a solid: one kind is solved after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SolidKind {
     Sphere,
     HalfSpace,
     Capsule,
@@ -36,7 +36,7 @@ pub enum Kind {
     Other,
 }
 
-impl Kind {
+impl SolidKind {
     /// All kinds, in the order in which they are solved.
     pub const ALL: [Self; 5] = [
         Self::Sphere,
@@ -155,13 +155,13 @@ fn add(planes: &mut Vec<Vec4>, normal: Vec3, point: Vec3) {
 }
 
 impl Solid {
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> SolidKind {
         match self {
-            Self::Sphere { .. } => Kind::Sphere,
-            Self::HalfSpace => Kind::HalfSpace,
-            Self::Capsule { .. } => Kind::Capsule,
-            Self::Cuboid { .. } => Kind::Cuboid,
-            _ => Kind::Other,
+            Self::Sphere { .. } => SolidKind::Sphere,
+            Self::HalfSpace => SolidKind::HalfSpace,
+            Self::Capsule { .. } => SolidKind::Capsule,
+            Self::Cuboid { .. } => SolidKind::Cuboid,
+            _ => SolidKind::Other,
         }
     }
 

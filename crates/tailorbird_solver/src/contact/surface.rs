@@ -55,7 +55,7 @@ impl Surface {
     }
 
     /// Finds the contact plane of particle `i`, which took this path in the axes of the mesh and keeps `margin` \[m\].
-    pub fn look(&self, patches: &mut Patches, i: usize, [from, to]: [Vec3; 2], margin: f32) {
+    pub fn find_plane(&self, patches: &mut Patches, i: usize, [from, to]: [Vec3; 2], margin: f32) {
         let slack = (0.5 * margin).max(self.detail);
         if let Some((point, normal)) = self.crossing(from, to) {
             let above = to - normal * (normal.dot(to - point) - margin);

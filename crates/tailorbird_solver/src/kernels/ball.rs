@@ -6,7 +6,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Distances, Solid},
+    solid::{DistanceFunction, Distances},
 };
 
 /// A ball around the origin.
@@ -16,7 +16,7 @@ pub struct Ball {
     pub radius: f32,
 }
 
-impl Solid for Ball {
+impl DistanceFunction for Ball {
     #[inline(always)]
     fn size(&self) -> f32 {
         self.radius
@@ -39,7 +39,7 @@ pub struct Ground {
     pub margin: f32,
 }
 
-impl Solid for Ground {
+impl DistanceFunction for Ground {
     #[inline(always)]
     fn size(&self) -> f32 {
         f32::MAX

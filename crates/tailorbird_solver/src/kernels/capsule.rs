@@ -4,7 +4,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Distances, Solid},
+    solid::{DistanceFunction, Distances},
 };
 
 /// Convex hull of two balls on the y axis.
@@ -56,7 +56,7 @@ impl Capsule {
     }
 }
 
-impl Solid for Capsule {
+impl DistanceFunction for Capsule {
     const COMMON: bool = true;
 
     #[inline(always)]

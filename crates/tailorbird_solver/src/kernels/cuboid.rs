@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, Window},
-    solid::{Distances, Solid},
+    solid::{DistanceFunction, Distances},
 };
 
 /// Box around the origin: all points within `half_size` of it along each axis \[m\].
@@ -22,7 +22,7 @@ pub(super) fn away<S: Simd>(simd: S, x: S::f32s) -> (S::f32s, S::f32s) {
     (x.max(zero - x), x.simd_lt(zero).select(zero - one, one))
 }
 
-impl Solid for Cuboid {
+impl DistanceFunction for Cuboid {
     const COMMON: bool = true;
 
     #[inline(always)]

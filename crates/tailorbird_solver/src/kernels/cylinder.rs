@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::{
     cuboid::away,
     lanes::{V3, Window},
-    solid::{Distances, Solid},
+    solid::{DistanceFunction, Distances},
 };
 
 /// Cylinder along y around the origin.
@@ -17,7 +17,7 @@ pub struct Cylinder {
     pub half_height: f32,
 }
 
-impl Solid for Cylinder {
+impl DistanceFunction for Cylinder {
     #[inline(always)]
     fn size(&self) -> f32 {
         self.radius.min(self.half_height)

@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     lanes::{Reading, V3, Window, each_window},
-    solid::{Distances, Motion, Solid},
+    solid::{DistanceFunction, Distances, Motion},
 };
 use crate::{numbers::Numbers, points::Points};
 use std::ops::Range;
@@ -61,7 +61,7 @@ pub struct ContactPlanes<'a> {
     pub margin: f32,
 }
 
-impl Solid for ContactPlanes<'_> {
+impl DistanceFunction for ContactPlanes<'_> {
     const CONVEX: bool = false;
     const COMMON: bool = true;
 

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{Reading, V3, WIDEST, Window, each_window},
-    solid::{Distances, Solid, lane},
+    solid::{DistanceFunction, Distances, lane},
 };
 use crate::{numbers::Numbers, points::Points};
 
@@ -155,7 +155,7 @@ fn middle<S: Simd>(values: S::f32s) -> f32 {
     0.5 * (low + high)
 }
 
-impl Solid for Planes<'_> {
+impl DistanceFunction for Planes<'_> {
     #[inline(always)]
     fn size(&self) -> f32 {
         self.size

@@ -34,7 +34,7 @@ pub fn rotate(rotation: Mat3, vectors: &mut Points) {
 }
 
 /// Adds the centrifugal displacement of a substep about the origin: −φ × (φ × x), with the angle φ of the substep, about its axis \[rad\].
-pub fn fling(turned: Vec3, inv_mass: &[f32], position: &mut Points) {
+pub fn add_centrifugal(turned: Vec3, inv_mass: &[f32], position: &mut Points) {
     for (i, w) in inv_mass.iter().enumerate() {
         if *w > 0.0 {
             let place = position.get(i);

@@ -65,7 +65,7 @@ pub struct Distances<S: Simd> {
 }
 
 /// A solid around its origin, margin included.
-pub trait Solid: Copy + Sync {
+pub trait DistanceFunction: Copy + Sync {
     /// True if the solid is convex, so that long paths can be followed.
     const CONVEX: bool = true;
 
@@ -91,7 +91,7 @@ pub(super) fn turned<S: Simd>(m: Mat3, v: V3<S>) -> V3<S> {
 
 /// Distances of the ends of paths (in the axes of the solid) from the surface, or from the plane that stopped the path before.
 #[inline(always)]
-fn meet<S: Simd, Q: Solid>(
+fn meet<S: Simd, Q: DistanceFunction>(
     simd: S,
     solid: &Q,
     window: Window,
@@ -137,7 +137,7 @@ pub(super) fn lane<S: Simd>(v: V3<S>, k: usize) -> Vec3 {
 
 /// Distance of a point from a solid, and the unit vector out of it.
 #[inline(never)]
-fn near_one<Q: Solid>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
+fn near_one<Q: DistanceFunction>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
     let simd = Fallback::new();
     let near = solid.distances(simd, Window::single(i), V3::splat(simd, point));
     let out = unit(simd, near.out, near.length);
@@ -147,7 +147,7 @@ fn near_one<Q: Solid>(solid: &Q, i: usize, point: Vec3) -> (f32, Vec3) {
 /// Follows a long path from its start. Returns the height of its end above the plane that stops it, and the plane's normal; `None` where
 /// nothing stops it.
 #[inline(never)]
-fn sweep<Q: Solid>(solid: &Q, i: usize, start: Vec3, end: Vec3) -> Option<(f32, Vec3)> {
+fn sweep<Q: DistanceFunction>(solid: &Q, i: usize, start: Vec3, end: Vec3) -> Option<(f32, Vec3)> {
     let travel = end - start;
     let (mut distance, mut plane) = near_one(solid, i, start);
     if distance < -1e-4 * solid.size() {
@@ -175,7 +175,7 @@ fn sweep<Q: Solid>(solid: &Q, i: usize, start: Vec3, end: Vec3) -> Option<(f32, 
 }
 
 /// Keeps all free particles (`inv_mass` > 0) of a range out of a solid. Returns whether any touches.
-pub fn collide_all<Q: Solid>(
+pub fn collide_all<Q: DistanceFunction>(
     level: Level,
     solid: &Q,
     motion: &Motion,
@@ -205,7 +205,7 @@ pub fn collide_all<Q: Solid>(
 }
 
 #[inline(always)]
-fn collide_all_with<S: Simd, Q: Solid>(
+fn collide_all_with<S: Simd, Q: DistanceFunction>(
     simd: S,
     solid: &Q,
     motion: &Motion,
@@ -284,7 +284,12 @@ pub struct Contact {
 }
 
 /// Contact at the end of the path of particle `i`, with the surface of a solid or with the plane that stopped the path before.
-pub fn nearest<Q: Solid>(solid: &Q, motion: &Motion, i: usize, [from, to]: [Vec3; 2]) -> Contact {
+pub fn nearest<Q: DistanceFunction>(
+    solid: &Q,
+    motion: &Motion,
+    i: usize,
+    [from, to]: [Vec3; 2],
+) -> Contact {
     let inverse = motion.axes.transpose();
     let start = inverse * (motion.turn * (from - motion.from));
     let end = inverse * (to - motion.to);
@@ -305,7 +310,7 @@ pub fn nearest<Q: Solid>(solid: &Q, motion: &Motion, i: usize, [from, to]: [Vec3
 }
 
 /// Calls `found` for each particle of a range that touches a solid now, in order.
-pub fn find<Q: Solid>(
+pub fn find<Q: DistanceFunction>(
     solid: &Q,
     motion: &Motion,
     particles: Touching,
@@ -318,7 +323,7 @@ pub fn find<Q: Solid>(
 }
 
 #[inline(always)]
-fn find_with<S: Simd, Q: Solid>(
+fn find_with<S: Simd, Q: DistanceFunction>(
     simd: S,
     solid: &Q,
     motion: &Motion,

@@ -38,15 +38,19 @@ fn size() -> impl Strategy<Value = f32> {
 }
 
 /// Distance of a path's end from a shape after the contact, outwards, and the greatest depth before on the path.
-fn after<Q: Solid>(solid: &Q, path: [Vec3; 2], distance: impl Fn(Vec3) -> f32) -> (f32, f32) {
+fn after<Q: DistanceFunction>(
+    solid: &Q,
+    path: [Vec3; 2],
+    distance: impl Fn(Vec3) -> f32,
+) -> (f32, f32) {
     let contact = nearest(solid, &STILL, 0, path);
     let end = path[1] + contact.normal * contact.depth.max(0.0);
-    let on_the_way = (0..=200).map(|k| distance(path[0].lerp(end, k as f32 / 200.0)));
-    (distance(end), on_the_way.fold(f32::MAX, f32::min))
+    let on_the_path = (0..=200).map(|k| distance(path[0].lerp(end, k as f32 / 200.0)));
+    (distance(end), on_the_path.fold(f32::MAX, f32::min))
 }
 
 /// Checks a path that starts outside, as it comes and at 20 m/s through the middle (a substep of 1/960 s, and longer ones).
-fn check<Q: Solid>(
+fn check<Q: DistanceFunction>(
     solid: &Q,
     [from, to, aim]: [Vec3; 3],
     distance: impl Fn(Vec3) -> f32,
@@ -58,11 +62,11 @@ fn check<Q: Solid>(
     }
     let direction = (aim - from).normalize_or_zero();
     for travel in [20.0 / 960.0, 20.0 / 60.0, 20.0] {
-        let (end, way) = after(solid, [from, from + direction * travel], &distance);
+        let (end, least) = after(solid, [from, from + direction * travel], &distance);
         prop_assert!(end > -1e-4, "ends at {end} after {travel} m");
         // Half of a substep's path goes by unseen where it is short against the shape.
         let unseen = (LONG * solid.size()).min(travel) + 1e-3;
-        prop_assert!(way > -unseen, "was at {way} after {travel} m");
+        prop_assert!(least > -unseen, "was at {least} after {travel} m");
     }
     Ok(())
 }
@@ -121,7 +125,7 @@ fn particles() -> (Points, Points, Numbers) {
     (position, previous, inv_mass.collect())
 }
 
-fn bits<Q: Solid>(level: Level, solid: &Q, cuts: &[usize]) -> Vec<u32> {
+fn bits<Q: DistanceFunction>(level: Level, solid: &Q, cuts: &[usize]) -> Vec<u32> {
     let turn = Quat::from_euler(EulerRot::XYZ, 0.1, 0.2, 0.3);
     let motion = Motion {
         from: Vec3::new(-0.1, 0.0, 0.0),
@@ -157,7 +161,7 @@ fn bits<Q: Solid>(level: Level, solid: &Q, cuts: &[usize]) -> Vec<u32> {
     all.flat_map(|p| p.to_array().map(f32::to_bits)).collect()
 }
 
-fn same_bits<Q: Solid>(solid: &Q) {
+fn same_bits<Q: DistanceFunction>(solid: &Q) {
     let plain = bits(Level::fallback(), solid, &[]);
     for level in levels() {
         for cuts in [&[][..], &[16], &[5, 32, 61]] {

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::{
     lanes::{V3, WIDEST, Window},
-    solid::{Distances, Solid},
+    solid::{DistanceFunction, Distances},
 };
 
 /// Heights in a grid around the origin; each cell is two triangles.
@@ -32,7 +32,7 @@ impl Terrain<'_> {
     }
 }
 
-impl Solid for Terrain<'_> {
+impl DistanceFunction for Terrain<'_> {
     const CONVEX: bool = false;
 
     #[inline(always)]

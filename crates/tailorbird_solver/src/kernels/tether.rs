@@ -21,7 +21,7 @@ pub struct Tether<W> {
     /// Factor of the lengths [-]: above 1 where pins are further apart than the sheet between them is long.
     pub longer: f32,
     /// Largest distance of each particle from the pin.
-    pub ways: W,
+    pub distances: W,
 }
 
 /// Distances along a sheet that is flat at rest: straight lines.
@@ -99,10 +99,10 @@ pub fn solve_straight(
                         window,
                         row * sheet.columns,
                         #[inline(always)]
-                        |ways, longer| {
-                            let [dx, dy] = (ways.spacing * (slack * longer)).to_array();
-                            let along = dy * (row as f32 - ways.row as f32);
-                            let first = window.at as f32 - ways.column as f32;
+                        |distances, longer| {
+                            let [dx, dy] = (distances.spacing * (slack * longer)).to_array();
+                            let along = dy * (row as f32 - distances.row as f32);
+                            let first = window.at as f32 - distances.column as f32;
                             let across = (lane_numbers(simd) + first) * dx;
                             across * across + along * along
                         },
@@ -132,7 +132,7 @@ fn pull<S: Simd, W: Copy>(
     let mut taut = false;
     for tether in tethers.iter().flatten() {
         // Lanes beyond a short window have no effect: they are not stored.
-        let mut l2 = l2(tether.ways, tether.longer);
+        let mut l2 = l2(tether.distances, tether.longer);
         let d = p - V3::splat(simd, tether.anchor);
         let q = d.dot(d);
         let beyond = q.simd_gt(l2);

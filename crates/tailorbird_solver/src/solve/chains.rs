@@ -169,7 +169,7 @@ impl Pass<'_> {
         let slack = self.slack() * (1.0 + particles.state.grant.largest());
         // A hand does not pull the cloth further from its pins than the tethers reach.
         if let Some((held, _)) = particles.input.held.in_hand() {
-            let i = held as usize;
+            let i = held.index();
             let position = &mut particles.state.position;
             let from = position.get(i);
             position.set(i, tethers.reached(held, from, position, slack));

@@ -8,7 +8,7 @@ mod slowing;
 mod tangles;
 
 use crate::{
-    cloth::Cloth,
+    cloth::ClothData,
     coefficients::Method,
     effort,
     kernels::verlet::Verlet,
@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Moves the particles of one cloth.
-pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
+pub fn integrate(substep: &Substep, cloth: &mut ClothData) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     let particles = &mut *cloth.particles;
     let seconds = substep.seconds;
@@ -65,7 +65,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
         );
     }
     for (pin, place) in held.pins() {
-        let i = pin as usize;
+        let i = pin.index();
         let from = position.get(i);
         position.set(i, from + (place - from) / substep.left() as f32);
     }
@@ -74,7 +74,7 @@ pub fn integrate(substep: &Substep, cloth: &mut Cloth) {
 }
 
 /// Solves the constraints of one cloth: springs of attachments together with all others, then the motion constraints.
-pub fn solve(substep: &Substep, cloth: &mut Cloth) {
+pub fn solve(substep: &Substep, cloth: &mut ClothData) {
     let (topology, material) = (cloth.topology, cloth.coefficients);
     if let Some(forces) = &mut cloth.forces {
         forces.begin(substep, cloth.particles);
@@ -104,7 +104,7 @@ pub fn solve(substep: &Substep, cloth: &mut Cloth) {
 }
 
 /// Damps tangles, after the last substep.
-pub fn calm(substep: &Substep, cloth: &mut Cloth) {
+pub fn damp_tangles(substep: &Substep, cloth: &mut ClothData) {
     let solves = cloth.method == Method::Lines && substep.iterations > 0;
     if solves && substep.left() == 1 {
         let pass = chains::Pass::of(substep, cloth.topology, cloth.coefficients, 0);

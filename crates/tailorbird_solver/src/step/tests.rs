@@ -13,7 +13,7 @@ use crate::{
     holds::Holds,
     shape::ClothShape,
     tethers::Tethers,
-    topology::{Topology, copies::ParticleCopy, test_meshes},
+    topology::{Topology, copies::ParticleCopy, order::Stored, test_meshes},
     workers::Workers,
 };
 
@@ -71,7 +71,7 @@ impl Owned {
         };
         let mut particles = Particles::at_rest(&topology);
         let held = held.iter().map(|&particle| Held {
-            particle,
+            particle: Stored(particle),
             by: HeldBy::Pin(topology.rest_positions[particle as usize]),
         });
         particles.hold(HolderKind::Pin, held);
@@ -86,8 +86,8 @@ impl Owned {
         }
     }
 
-    fn cloth(&mut self) -> Cloth<'_> {
-        Cloth {
+    fn cloth(&mut self) -> ClothData<'_> {
+        ClothData {
             topology: &self.topology,
             coefficients: &self.coefficients,
             method: Method::Lines,
@@ -145,7 +145,7 @@ fn go(colliders: &Colliders, group: &mut [&mut Owned]) {
     for owned in &mut *group {
         owned.particles.begin_step();
     }
-    let mut cloths: Vec<Cloth> = group.iter_mut().map(|owned| owned.cloth()).collect();
+    let mut cloths: Vec<ClothData> = group.iter_mut().map(|owned| owned.cloth()).collect();
     step(count, nth, colliders, &mut cloths);
 }
 
@@ -213,5 +213,5 @@ fn a_report_names_the_first_particle_that_is_not_finite() {
         .position
         .set(33, Vec3::Y * f32::INFINITY);
     let report = Report::of(Level::new(), &sheet.particles);
-    assert_eq!(report.non_finite, Some(33));
+    assert_eq!(report.non_finite, Some(Stored(33)));
 }

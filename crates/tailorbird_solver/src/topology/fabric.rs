@@ -15,7 +15,7 @@ use crate::memory::heap;
 /// Weight below which an edge has no flow across it: such is the diagonal of a right-angled cell.
 const LEAST_WEIGHT: f32 = 1e-3;
 
-/// Largest part of the way to their common velocity that neighbours come in a substep [-].
+/// Largest part of the change to their common velocity that neighbours come in a substep [-].
 const MOST_EXCHANGE: f32 = 0.5;
 
 /// Compliance of a spring along a diagonal, as a part of that for shear: a shear angle γ stretches the diagonals of a square cell by γ/2,

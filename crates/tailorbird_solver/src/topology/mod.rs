@@ -41,7 +41,7 @@ use hinges::HingeConstraints;
 use lattice::Lattice;
 use layout::Layout;
 use neighbors::{NeighborLists, Neighbors};
-use order::ParticleOrder;
+use order::{ParticleOrder, Stored};
 use repair::TriangleCopy;
 use report::ClothMeshReport;
 use triangles::Triangles;
@@ -192,19 +192,19 @@ impl Topology {
     /// # Panics
     /// When the vertex is out of range.
     #[inline]
-    pub fn particle_of_vertex(&self, vertex: usize) -> u32 {
+    pub fn particle_of_vertex(&self, vertex: usize) -> Stored {
         if self.is_grid() {
             assert!(
                 vertex < self.original_particles(),
                 "vertex {vertex} of a grid"
             );
-            return vertex as u32;
+            return Stored(vertex as u32);
         }
-        self.particle_of_vertex[vertex]
+        Stored(self.particle_of_vertex[vertex])
     }
 
     /// For each vertex of the source the particle that moves it.
-    pub fn particles_of_vertices(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+    pub fn particles_of_vertices(&self) -> impl ExactSizeIterator<Item = Stored> + '_ {
         let vertices = if self.is_grid() {
             self.original_particles()
         } else {
@@ -249,7 +249,7 @@ impl Topology {
     }
 
     /// Particles joined to one by an edge or a diagonal; none where the particle is out of range.
-    pub fn neighbors(&self, particle: u32) -> Neighbors<'_> {
+    pub fn neighbors(&self, particle: Stored) -> Neighbors<'_> {
         if let Layout::Sheet(sheet) = &self.layout {
             return Neighbors::in_sheet(sheet, particle);
         }

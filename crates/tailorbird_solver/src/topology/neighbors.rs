@@ -2,22 +2,22 @@
 
 use std::ops::Deref;
 
-use super::{alive::Family, layout::SheetLayout};
+use super::{alive::Family, layout::SheetLayout, order::Stored};
 use crate::memory::heap;
 
 /// Particles that are joined to a particle by an edge or a diagonal.
 #[derive(Clone, Copy, Debug)]
 pub enum Neighbors<'a> {
     /// Neighbours of a particle of a lattice: up to eight.
-    Around([u32; 8], usize),
+    Around([Stored; 8], usize),
     /// Neighbours of a particle of a mesh.
-    Listed(&'a [u32]),
+    Listed(&'a [Stored]),
 }
 
 impl Deref for Neighbors<'_> {
-    type Target = [u32];
+    type Target = [Stored];
 
-    fn deref(&self) -> &[u32] {
+    fn deref(&self) -> &[Stored] {
         match self {
             Self::Around(particles, count) => &particles[..*count],
             Self::Listed(particles) => particles,
@@ -27,7 +27,7 @@ impl Deref for Neighbors<'_> {
 
 impl Neighbors<'_> {
     /// Neighbours of a particle of a sheet by whole edges; none where it is out of range.
-    pub(super) fn in_sheet(sheet: &SheetLayout, particle: u32) -> Self {
+    pub(super) fn in_sheet(sheet: &SheetLayout, particle: Stored) -> Self {
         const AROUND: [((i64, i64), Family); 8] = [
             ((1, 0), Family::Row),
             ((-1, 0), Family::Row),
@@ -40,15 +40,16 @@ impl Neighbors<'_> {
         ];
         let lattice = &sheet.lattice;
         let (columns, rows) = (i64::from(lattice.columns), i64::from(lattice.rows));
+        let particle = particle.0;
         let (column, row) = (i64::from(particle) % columns, i64::from(particle) / columns);
-        let (mut particles, mut count) = ([0; 8], 0);
+        let (mut particles, mut count) = ([Stored(0); 8], 0);
         for ((dx, dy), family) in AROUND {
             let (x, y) = (column + dx, row + dy);
             if row < rows && (0..columns).contains(&x) && (0..rows).contains(&y) {
                 let other = (y * columns + x) as u32;
                 // The first end of an edge comes first.
                 if sheet.is_alive(family, particle.min(other)) {
-                    particles[count] = other;
+                    particles[count] = Stored(other);
                     count += 1;
                 }
             }
@@ -62,7 +63,7 @@ impl Neighbors<'_> {
 pub(super) struct NeighborLists {
     /// Start of the list of each particle in `particles`; one more than there are particles.
     offsets: Vec<u32>,
-    particles: Vec<u32>,
+    particles: Vec<Stored>,
 }
 
 impl NeighborLists {
@@ -76,10 +77,10 @@ impl NeighborLists {
             offsets[i + 1] += offsets[i];
         }
         let mut next = offsets.clone();
-        let mut list = vec![0; offsets[particles] as usize];
+        let mut list = vec![Stored(0); offsets[particles] as usize];
         for [a, b] in edges {
             for (from, to) in [(a, b), (b, a)] {
-                list[next[from as usize] as usize] = to;
+                list[next[from as usize] as usize] = Stored(to);
                 next[from as usize] += 1;
             }
         }
@@ -90,8 +91,8 @@ impl NeighborLists {
     }
 
     /// Neighbours of one particle; none where the particle is out of range.
-    pub(super) fn of(&self, particle: u32) -> &[u32] {
-        let i = particle as usize;
+    pub(super) fn of(&self, particle: Stored) -> &[Stored] {
+        let i = particle.index();
         match (self.offsets.get(i), self.offsets.get(i + 1)) {
             (Some(&start), Some(&end)) => &self.particles[start as usize..end as usize],
             _ => &[],
@@ -117,7 +118,8 @@ mod tests {
             spacing: Vec2::ONE,
         };
         let sorted = |particle| {
-            let mut around = Neighbors::in_sheet(&lattice.into(), particle).to_vec();
+            let around = Neighbors::in_sheet(&lattice.into(), Stored(particle));
+            let mut around: Vec<u32> = around.iter().map(|i| i.0).collect();
             around.sort_unstable();
             around
         };

@@ -5,7 +5,10 @@ use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_math::Vec3;
 use bevy_picking::{Pickable, backend::HitData};
 use bevy_shape::Ray3d;
-use tailorbird_cloth::prelude::*;
+use tailorbird_cloth::{
+    prelude::*,
+    topology::order::{Given, Stored},
+};
 
 use super::{super::ClothPointerHit, view::VisiblePoint};
 
@@ -77,9 +80,9 @@ impl ClothsItem<'_, '_> {
         let (start, distance) = particles.closest_particle(point)?;
         let edge = self
             .topology
-            .neighbors(particles.order().stored(start as u32))
+            .neighbors(particles.order().stored(Given(start as u32)))
             .iter()
-            .map(|&i| points.get(i as usize).distance(particles.position(start)))
+            .map(|i| points.get(i.index()).distance(particles.position(start)))
             .fold(0.0, f32::max);
         let reach = (distance + 2.0 * edge).powi(2);
         let (triangle, barycentric, distance) = triangles
@@ -102,7 +105,7 @@ impl ClothsItem<'_, '_> {
         let edge = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
         let speed = corners
             .into_iter()
-            .map(|i| particles.order().given(i as u32) as usize)
+            .map(|i| particles.order().given(Stored(i as u32)).index())
             .map(|i| particles.velocity(i).length())
             .fold(0.0, f32::max);
         let located = Located {
@@ -144,7 +147,7 @@ impl Located {
             barycentric: self.barycentric,
             particle: indices
                 .into_iter()
-                .map(|i| cloth.particles.order().given(i as u32) as usize)
+                .map(|i| cloth.particles.order().given(Stored(i as u32)).index())
                 .min_by(|&i, &j| {
                     let distance = |i| {
                         cloth

@@ -163,3 +163,12 @@ fn a_triangle_without_area_and_still_air_do_nothing() {
         assert_eq!([&drag, &old], [&sheet.start(), &sheet.start()]);
     }
 }
+
+/// Where a mass is missing, nothing is computed.
+#[test]
+#[should_panic(expected = "a sheet of 4 x 5 particles")]
+fn a_sheet_that_lacks_a_mass_is_refused() {
+    let mut sheet = Wavy::new(4, 5);
+    sheet.inv_mass.pop();
+    sheet.side_by_side(Level::new(), air(1.2, 0.7), once(0..5));
+}

@@ -144,9 +144,9 @@ proptest! {
             };
             prop_assume!(depth.abs() > 1e-5);
             let part = if kind == 0 { 1.0 } else { strength(depth, falloff.into()) };
-            let way = wanted * part * f64::from(seconds);
+            let displacement = wanted * part * f64::from(seconds);
             let is = out.get(i).as_dvec3() - (place * 0.5).as_dvec3();
-            prop_assert!(is.distance(way) < most * f64::from(seconds) + 2e-4, "{is} {way}");
+            prop_assert!(is.distance(displacement) < most * f64::from(seconds) + 2e-4, "{is} {displacement}");
         }
     }
 }

@@ -213,7 +213,8 @@ impl Particles {
 
 /// Any particles: those that are where a contact was noted have been about there before.
 pub(super) fn particles(size: f32, travel: f32) -> impl Strategy<Value = Particles> {
-    let path = (vector(size), vector(travel)).prop_map(|(from, way)| (from, from + way));
+    let path =
+        (vector(size), vector(travel)).prop_map(|(from, displacement)| (from, from + displacement));
     let noted = (vector(1.0), 0.0_f32..0.3, any::<bool>());
     let noted = noted.prop_map(|(normal, depth, some)| {
         if some {

@@ -182,7 +182,7 @@ proptest! {
     #[test]
     fn what_turns_is_flung_from_its_axis(turn in vector(0.3), place in vector(5.0)) {
         let mut position = points(&[place, place]);
-        rigid::fling(turn, &[1.0, 0.0], &mut position);
+        rigid::add_centrifugal(turn, &[1.0, 0.0], &mut position);
         prop_assert_eq!(position.get(1), place);
         let (phi, x) = (turn.as_dvec3(), place.as_dvec3());
         let from_axis = x - phi.normalize_or_zero() * phi.normalize_or_zero().dot(x);

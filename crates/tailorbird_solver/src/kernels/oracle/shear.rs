@@ -126,14 +126,14 @@ proptest! {
 
     /// α̃ + W/2 in place of W where that is more, so that compliance below W/2 changes nothing.
     #[test]
-    fn compliance_shortens_the_way(alpha_tilde in 0.0_f32..10.0) {
+    fn compliance_shortens_the_displacement(alpha_tilde in 0.0_f32..10.0) {
         let start = cell(0.2, [1.0; 4]);
-        let way = |alpha_tilde: f32| {
+        let displacement = |alpha_tilde: f32| {
             let shear = Shear { rest_length: 1.5, alpha_tilde, rising_first: true };
             solved(&start, shear)[0].distance(start.position[0].as_dvec3())
         };
         let part = 2.0 / (f64::from(alpha_tilde) + 1.0).max(2.0);
-        prop_assert!((way(alpha_tilde) - part * way(0.0)).abs() < 1e-6);
+        prop_assert!((displacement(alpha_tilde) - part * displacement(0.0)).abs() < 1e-6);
     }
 }
 

@@ -19,7 +19,7 @@ use crate::kernels::{
     contact::Phase,
     cuboid::Cuboid,
     cylinder::Cylinder,
-    solid::{Motion, Solid, collide_all, nearest},
+    solid::{DistanceFunction, Motion, collide_all, nearest},
 };
 
 pub(super) const STILL: Motion = Motion {
@@ -38,14 +38,14 @@ fn size() -> impl Strategy<Value = f32> {
 }
 
 /// Distance of a point from a solid, and the direction out of it.
-pub(super) fn near_of<Q: Solid>(solid: &Q, p: Vec3) -> (f64, DVec3) {
+pub(super) fn near_of<Q: DistanceFunction>(solid: &Q, p: Vec3) -> (f64, DVec3) {
     let contact = nearest(solid, &STILL, 0, [p, p]);
     (-f64::from(contact.depth), contact.normal.as_dvec3())
 }
 
 /// Compares the solid's distance, which is a plane's, with another library's: equal inside, and no more than that outside. Along the
 /// normal, it changes by the distance moved.
-fn compare<Q: Solid>(
+fn compare<Q: DistanceFunction>(
     solid: &Q,
     p: Vec3,
     other: &dyn PointQuery,
@@ -140,11 +140,11 @@ proptest! {
     /// A quarter of its size, and more: followed, so that what passes through a part of the ball does not get by.
     #[test]
     fn paths_of_a_quarter_of_the_size_are_followed(radius in 0.1_f32..1.0) {
-        for (way, followed) in [(0.24, false), (0.26, true)] {
+        for (travel, followed) in [(0.24, false), (0.26, true)] {
             // A chord that dips by 3 ‰ of the radius below the surface in its middle, and has both ends above.
-            let path = [-0.5, 0.5].map(|half| Vec3::new(way * half, 0.997, 0.0) * radius);
+            let path = [-0.5, 0.5].map(|half| Vec3::new(travel * half, 0.997, 0.0) * radius);
             let contact = nearest(&Ball { radius }, &STILL, 0, path);
-            prop_assert_eq!(contact.depth > 0.0, followed, "{} {}", way, contact.depth);
+            prop_assert_eq!(contact.depth > 0.0, followed, "{} {}", travel, contact.depth);
             let both = Particles {
                 from: vec![path[0]; 2],
                 to: vec![path[1]; 2],
@@ -192,8 +192,8 @@ proptest! {
         };
         for i in 0..particles.from.len() {
             // As the solid moves, so that paths are short against it.
-            let way = particles.to[i] - particles.from[i];
-            particles.to[i] = motion.to + turn * (particles.from[i] - place) + way;
+            let travel = particles.to[i] - particles.from[i];
+            particles.to[i] = motion.to + turn * (particles.from[i] - place) + travel;
             let normal = (to_world * distance_of(local(&particles, i)[1]).1).as_vec3();
             if let Some(noted) = &mut particles.noted {
                 noted[i].0 = (normal + 0.8 * noted[i].0).normalize_or(Vec3::X);

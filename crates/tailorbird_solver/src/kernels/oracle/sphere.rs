@@ -59,8 +59,8 @@ fn rule(sphere: &MovingSphere, particles: &Particles, i: usize) -> Verdict {
         at = from;
         if above {
             let half = (r * r - nearest * nearest).sqrt();
-            let way = (-approach / t2.sqrt() - half).max(0.0);
-            at = from + travel / t2.sqrt() * way;
+            let along = (-approach / t2.sqrt() - half).max(0.0);
+            at = from + travel / t2.sqrt() * along;
         }
         if t2 > r * r {
             let n = at.normalize();
@@ -136,10 +136,10 @@ proptest! {
         sphere in spheres(), mut particles in particles(1.0, 0.3), off in prop::collection::vec(-0.01_f32..0.03, 40),
     ) {
         for (i, off) in off.into_iter().take(particles.from.len()).enumerate() {
-            let way = particles.to[i] - particles.from[i];
+            let travel = particles.to[i] - particles.from[i];
             let direction = particles.from[i].normalize_or(Vec3::X);
             particles.from[i] = sphere.from + direction * sphere.radius * (1.0 + off);
-            particles.to[i] = particles.from[i] + way * 0.3;
+            particles.to[i] = particles.from[i] + travel * 0.3;
             if let Some(noted) = &mut particles.noted {
                 noted[i].0 = (direction + 0.8 * noted[i].0).normalize_or(Vec3::X);
             }

@@ -15,11 +15,11 @@ use crate::kernels::{
     capsule::Capsule,
     cuboid::Cuboid,
     cylinder::Cylinder,
-    solid::{Motion, Solid, collide_all, find, nearest},
+    solid::{DistanceFunction, Motion, collide_all, find, nearest},
 };
 
 /// Many paths at once, each as it is alone, which others check.
-fn compare<Q: Solid>(
+fn compare<Q: DistanceFunction>(
     solid: &Q,
     motion: &Motion,
     particles: &Particles,
@@ -84,13 +84,13 @@ proptest! {
     /// Into a ball it is stopped at the plane where it enters, to what twelve steps of Newton's leave; past it nothing happens.
     #[test]
     fn a_long_path_is_stopped_by_what_it_enters_alone(
-        from in vector(3.0), aim in vector(1.0), aside in 0.0_f32..2.0, way in 0.5_f32..10.0, radius in 0.3_f32..2.0, at in vector(1.0),
+        from in vector(3.0), aim in vector(1.0), aside in 0.0_f32..2.0, travel in 0.5_f32..10.0, radius in 0.3_f32..2.0, at in vector(1.0),
     ) {
         prop_assume!(from.length() > 1.01 * radius && from.cross(aim).length() > 0.1);
         // Past the middle by a part of the radius.
         let off = aim.reject_from(from).normalize() * aside * radius;
         let direction = (off - from).normalize();
-        let path = [from, from + direction * way];
+        let path = [from, from + direction * travel];
         let motion = Motion { from: at, to: at, ..STILL };
         let contact = nearest(&Ball { radius }, &motion, 0, path.map(|p| p + at));
         let (r, d) = (f64::from(radius), direction.as_dvec3().normalize());
@@ -98,15 +98,15 @@ proptest! {
         let past = (from.as_dvec3().length_squared() - along * along).max(0.0).sqrt();
         prop_assume!((past / r - 1.0).abs() > 0.05);
         let enters = along - (r * r - past * past).max(0.0).sqrt();
-        prop_assume!((enters - f64::from(way)).abs() > 1e-3 && way > 0.26 * radius);
-        if past > r || enters > f64::from(way) {
+        prop_assume!((enters - f64::from(travel)).abs() > 1e-3 && travel > 0.26 * radius);
+        if past > r || enters > f64::from(travel) {
             prop_assert!(contact.depth < 0.0, "{}", contact.depth);
         } else {
             let hit = from.as_dvec3() + d * enters;
             let normal = hit.normalize();
-            let depth = normal.dot(hit - (from.as_dvec3() + d * f64::from(way)));
+            let depth = normal.dot(hit - (from.as_dvec3() + d * f64::from(travel)));
             prop_assert!(contact.normal.as_dvec3().distance(normal) < 1e-3, "{} {normal}", contact.normal);
-            prop_assert!((f64::from(contact.depth) - depth).abs() < 2e-3 * f64::from(way), "{} {depth}", contact.depth);
+            prop_assert!((f64::from(contact.depth) - depth).abs() < 2e-3 * f64::from(travel), "{} {depth}", contact.depth);
         }
     }
 }

@@ -37,7 +37,7 @@ struct Case {
 const SPACING: Vec2 = Vec2::new(0.7, 0.8);
 
 impl Case {
-    fn ways(&self, pin: Pin) -> Straight {
+    fn distances(&self, pin: Pin) -> Straight {
         Straight {
             column: (pin.at[0] % self.cloth.columns) as u32,
             row: (pin.at[1] % self.cloth.rows) as u32,
@@ -48,8 +48,8 @@ impl Case {
     /// Largest distance of a particle from a pin.
     fn reach(&self, pin: Pin, i: usize) -> f64 {
         let [column, row] = [i % self.cloth.columns, i / self.cloth.columns];
-        let ways = self.ways(pin);
-        let cells = [(column, ways.column), (row, ways.row)];
+        let distances = self.distances(pin);
+        let cells = [(column, distances.column), (row, distances.row)];
         let [x, y] = cells.map(|(here, there)| here as f64 - f64::from(there));
         let [dx, dy] = SPACING.to_array().map(f64::from);
         (x * dx).hypot(y * dy) * f64::from(self.slack) * f64::from(pin.longer)
@@ -61,7 +61,7 @@ impl Case {
                 anchor: pin.anchor,
                 anchor_before: pin.before,
                 longer: pin.longer,
-                ways: of(*pin),
+                distances: of(*pin),
             })
         });
         pins.chain([None]).collect()
@@ -77,13 +77,15 @@ impl Case {
         });
         let level = Level::new();
         let n = self.cloth.position.len();
-        let straight = self.tethers(|pin| self.ways(pin));
+        let straight = self.tethers(|pin| self.distances(pin));
         let lengths: Vec<Vec<f32>> = (self.pins.iter())
             .map(|pin| {
-                let ways = self.ways(*pin);
+                let distances = self.distances(*pin);
                 let column = |i: usize| (i % self.cloth.columns) as u32;
                 let row = |i: usize| (i / self.cloth.columns) as u32;
-                (0..n).map(|i| ways.length(column(i), row(i))).collect()
+                (0..n)
+                    .map(|i| distances.length(column(i), row(i)))
+                    .collect()
             })
             .collect();
         let by_length = self.pins.iter().zip(&lengths).map(|(pin, lengths)| {
@@ -91,7 +93,7 @@ impl Case {
                 anchor: pin.anchor,
                 anchor_before: pin.before,
                 longer: pin.longer,
-                ways: Reading(lengths),
+                distances: Reading(lengths),
             })
         });
         let by_length: Vec<_> = by_length.collect();

@@ -119,7 +119,7 @@ fn tethers() {
     for size in SIZES {
         let start = State::sheet(size);
         let n = start.inv_mass.len();
-        let ways = |pin: usize| Straight {
+        let distances = |pin: usize| Straight {
             column: (pin % start.columns) as u32,
             row: (pin / start.columns) as u32,
             spacing: Vec2::new(0.99, 0.97),
@@ -133,7 +133,7 @@ fn tethers() {
                     anchor,
                     anchor_before: anchor + 0.01,
                     longer: 1.01,
-                    ways: ways(pin),
+                    distances: distances(pin),
                 })
             });
             state.with_sheet_and_start(true, |sheet, recovery| {
@@ -143,8 +143,9 @@ fn tethers() {
             });
         });
         let lengths = pins.map(|pin| {
-            let length =
-                |i: usize| ways(pin).length((i % start.columns) as u32, (i / start.columns) as u32);
+            let length = |i: usize| {
+                distances(pin).length((i % start.columns) as u32, (i / start.columns) as u32)
+            };
             (0..n).map(length).collect::<Vec<f32>>()
         });
         same(&start, |level, state, cuts| {
@@ -154,7 +155,7 @@ fn tethers() {
                     anchor,
                     anchor_before: anchor + 0.01,
                     longer: 1.01,
-                    ways: Reading(&lengths[k]),
+                    distances: Reading(&lengths[k]),
                 })
             });
             let particles = blocks(n, cuts);
