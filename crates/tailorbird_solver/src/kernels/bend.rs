@@ -28,7 +28,7 @@ use super::{
 };
 
 /// Least α̃/w [-]. A fabric that is stiffer acts as one of this stiffness: beyond it, rounding would move it.
-const LEAST_MASS: f32 = 1e-5;
+const LEAST_MASS: f32 = 2e-6;
 
 /// Pivots and multipliers of the elimination of the lines side by side. They depend on the masses alone, and mostly are those of the lines before.
 pub struct Factors<'a> {

@@ -56,7 +56,7 @@ impl Line {
         for (i, row) in a.iter_mut().enumerate() {
             let w = self.inv_mass[i];
             if w > 0.0 {
-                row[i] += (self.bend / w).max(1e-5);
+                row[i] += (self.bend / w).max(2e-6);
             } else {
                 row.fill(0.0);
                 row[i] = 1.0;
