@@ -104,7 +104,7 @@ fn a_sheet_that_is_dragged_quickly_stretches_at_few_edges() {
             held.pins = pins.map(|(i, at)| ClothPin::at(i, at + aside)).to_vec();
         });
     };
-    check("drag", worst(&mut sheet, 180, drag), [6.5e-3, 0.12, 1.0]);
+    check("drag", worst(&mut sheet, 180, drag), [6.5e-3, 0.12, 1.4]);
 }
 
 #[test]

@@ -196,7 +196,7 @@ fn a_sheet_carries_balls_of_any_mass() {
         assert!(height > 0.1, "{mass} kg: sank to {height}");
         let part = carried / weight;
         assert!(
-            (part - 1.0).abs() < 0.0025,
+            (part - 1.0).abs() < 0.004,
             "{mass} kg: {part} of its weight"
         );
         // Of this gravity takes 0.16 m/s in a step, before the sheet gives it back.
@@ -224,7 +224,7 @@ fn a_sheet_that_is_lifted_takes_a_ball_along() {
             measured += (ball.at.translation.z - before) / (30.0 * STEP);
         }
     }
-    assert!((measured - 1.0).abs() < 0.01, "{measured} m/s");
+    assert!((measured - 1.0).abs() < 0.02, "{measured} m/s");
     let speed = ball.velocity.z;
     assert!((speed - 1.0).abs() < 0.05, "its velocity says {speed} m/s");
 }

@@ -37,6 +37,7 @@ impl LineStiffness {
         };
         let whole = Whole {
             bend: scale * self.bend,
+            part: S::f32s::splat(simd, 1.0) / scale,
             bears: S::f32s::splat(simd, 0.25 * self.mass) / scale,
         };
         (edge, whole)
@@ -48,6 +49,8 @@ impl LineStiffness {
 pub struct Whole<S: Simd> {
     /// α̃ of the triples [1/kg].
     pub bend: S::f32s,
+    /// Width of the strip that the line stands for, by that of a line within the sheet [-]: 1/2 at the border.
+    pub part: S::f32s,
     /// Tension that an edge bears, for κ = 4 w |μ| = 1: |μ| \[kg\]. w is the largest inverse mass; particles at the ends count half.
     pub bears: S::f32s,
 }

@@ -30,6 +30,7 @@ use std::ops::Range;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
+    bend,
     edges::{Edge, LineStiffness, Whole},
     edges::{LineLengths, SheetLines},
     lanes::{Shared, SharedPoints, V3, WIDEST, Window, for_few, with_scratch},
@@ -100,10 +101,13 @@ const PLAIN: u8 = 0;
 const BODIES: u8 = 1;
 const GRANTED: u8 = 2;
 
+/// Size of the scratch of lines, for each particle and lane: a block, the factors of edges and those of bending.
+const SCRATCH: usize = 11 + 2 + bend::Factors::SIZE;
+
 /// Solves each column of a range.
 pub fn solve_columns(level: Level, sheet: Sheet, stiffness: LineStiffness, columns: Range<usize>) {
     sheet.check();
-    with_scratch(sheet.rows * WIDEST * 13, |scratch| {
+    with_scratch(sheet.rows * WIDEST * SCRATCH, |scratch| {
         if sheet.pressed.is_some() {
             for_few!(level, simd => solve_columns_with::<_, BODIES>(simd, sheet, stiffness, columns, scratch));
         } else if sheet.lengths.is_some() {
@@ -123,16 +127,17 @@ fn solve_columns_with<S: Simd, const KIND: u8>(
     scratch: &mut [f32],
 ) {
     let (m, n) = (sheet.rows, S::f32s::LEN);
-    let contact = sheet.normal.is_some();
+    let how = [stiffness.bend.is_finite(), sheet.normal.is_some()];
     let (factors, rest) = scratch.split_at_mut(2 * m * n);
     let factors = Shared::new(factors);
+    let (of_bending, rest) = rest.split_at_mut(bend::Factors::SIZE * m * n);
+    let mut of_bending = bend::Factors::new(of_bending, m, n);
     let block = Block::new(rest, m, n);
     let mut lines = Lines {
         position: sheet.position,
         inv_mass: sheet.inv_mass,
         normal: sheet.normal.unwrap_or(sheet.position),
         pressed: sheet.pressed.unwrap_or(sheet.inv_mass),
-        bent: block.position,
         shared: block.shared,
         give: sheet.give,
         offset: columns.start,
@@ -154,8 +159,9 @@ fn solve_columns_with<S: Simd, const KIND: u8>(
             lines,
             of_lines(lines.offset),
             lengths,
-            contact,
+            how,
             factors,
+            &mut of_bending,
         );
         lines.offset += n;
     }
@@ -189,8 +195,9 @@ fn solve_columns_with<S: Simd, const KIND: u8>(
         block.lines(m, n, sheet.give),
         stiffness,
         block.lengths(n),
-        contact,
+        how,
         factors,
+        &mut of_bending,
     );
     for k in 0..m {
         let p: V3<S> = block.position.load(simd, k * n);
@@ -206,7 +213,7 @@ fn solve_columns_with<S: Simd, const KIND: u8>(
 /// Solves each row of a range.
 pub fn solve_rows(level: Level, sheet: Sheet, stiffness: LineStiffness, rows: Range<usize>) {
     sheet.check();
-    with_scratch(sheet.columns * WIDEST * 13, |scratch| {
+    with_scratch(sheet.columns * WIDEST * SCRATCH, |scratch| {
         if sheet.pressed.is_some() {
             for_few!(level, simd => solve_rows_with::<_, BODIES>(simd, sheet, stiffness, rows, scratch));
         } else if sheet.lengths.is_some() {
@@ -228,8 +235,10 @@ fn solve_rows_with<S: Simd, const KIND: u8>(
     let (m, n) = (sheet.columns, S::f32s::LEN);
     let (factors, rest) = scratch.split_at_mut(2 * m * n);
     let factors = Shared::new(factors);
+    let (of_bending, rest) = rest.split_at_mut(bend::Factors::SIZE * m * n);
+    let mut of_bending = bend::Factors::new(of_bending, m, n);
     let block = Block::new(rest, m, n);
-    let contact = sheet.normal.is_some();
+    let how = [stiffness.bend.is_finite(), sheet.normal.is_some()];
     let mut row = rows.start;
     while row < rows.end {
         let tile = Tile {
@@ -258,8 +267,9 @@ fn solve_rows_with<S: Simd, const KIND: u8>(
             block.lines(m, n, sheet.give),
             stiffness,
             block.lengths(n),
-            contact,
+            how,
             factors,
+            &mut of_bending,
         );
         tile.store(simd, block.position.x, sheet.position.x);
         tile.store(simd, block.position.y, sheet.position.y);
@@ -277,25 +287,29 @@ fn solve_block<S: Simd, const KIND: u8>(
     lines: Lines,
     (edge, whole): (Edge<S>, Whole<S>),
     lengths: LineLengths,
-    contact: bool,
+    [bends, contact]: [bool; 2],
     factors: Shared,
+    of_bending: &mut bend::Factors,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
+            if bends {
+                bend::solve(simd, lines, whole, of_bending);
+            }
             if KIND == BODIES {
-                line::solve::<S, _, true, PRESSED>(simd, lines, edge, whole, factors);
+                line::solve::<S, _, PRESSED>(simd, lines, edge, whole.bears, factors);
             } else if KIND == GRANTED {
                 let edges = SheetLines { edge, lengths };
                 if contact {
-                    line::solve::<S, _, true, TOUCHING>(simd, lines, edges, whole, factors);
+                    line::solve::<S, _, TOUCHING>(simd, lines, edges, whole.bears, factors);
                 } else {
-                    line::solve::<S, _, true, FREE>(simd, lines, edges, whole, factors);
+                    line::solve::<S, _, FREE>(simd, lines, edges, whole.bears, factors);
                 }
             } else if contact {
-                line::solve::<S, _, true, TOUCHING>(simd, lines, edge, whole, factors);
+                line::solve::<S, _, TOUCHING>(simd, lines, edge, whole.bears, factors);
             } else {
-                line::solve::<S, _, true, FREE>(simd, lines, edge, whole, factors);
+                line::solve::<S, _, FREE>(simd, lines, edge, whole.bears, factors);
             }
         },
     );
@@ -351,7 +365,6 @@ impl<'a> Block<'a> {
             inv_mass: self.inv_mass,
             normal: self.normal,
             pressed: self.pressed,
-            bent: self.position,
             shared: self.shared,
             give,
             offset: 0,

@@ -19,10 +19,6 @@
 //!
 //! A particle in contact moves along the surface alone: its inverse mass is w (I − n nᵀ), n being the contact's unit normal, or 0 without
 //! contact. A particle that carries a part of a body has a normal shorter than 1, and moves the less along it.
-//!
-//! With `BEND`, the triples k, k+1, k+2 resist bending in the same sweep: D = x_k − 2 x_{k+1} + x_{k+2} is pulled towards 0, by
-//! Δx = ∓w D/max(α̃ + W/2, W) with W = w_k + 4 w_{k+1} + w_{k+2}. The sum α̃ + W of position-based dynamics would be too soft at
-//! rest: multipliers start at 0 in each substep, and half of the change of D by the other triples comes later in the pass.
 
 #![expect(clippy::doc_markdown, reason = "formulas")]
 
@@ -32,29 +28,22 @@ use bevy_math::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::{
-    edges::{Edges, Whole},
+    edges::Edges,
     lanes::{Factor, Shared, V3},
-    lines::{FREE, Lines, NO_MASS, PRESSED, apply},
+    lines::{FREE, Lines, PRESSED, apply},
     row::{beside, own},
     share::{TensionBounds, share},
 };
 
-/// State of the sweep forward: the particles a, b, c = e, e+1, e+2 around the edge e, and the last row of the elimination.
+/// State of the sweep forward: the first particle of the edge e, and the last row of the elimination.
 struct Sweep<'a, S: Simd, E> {
     simd: S,
     lines: Lines<'a>,
     edges: E,
-    /// α̃ of the triples [1/kg].
-    bend: S::f32s,
     factors: Shared<'a>,
     a: V3<S>,
-    b: V3<S>,
-    c: V3<S>,
     w_a: S::f32s,
-    w_b: S::f32s,
-    w_c: S::f32s,
     n_a: V3<S>,
-    weights: Weights<S>,
     /// The edge e − 1: d, 1/pivot, solution.
     d: V3<S>,
     inv_pivot: S::f32s,
@@ -66,25 +55,20 @@ struct Sweep<'a, S: Simd, E> {
 /// One vector at a time: with two vectors, the divisions of one could fill the gaps of the other, but the state no longer fits the
 /// registers, and a quarter of the speed is lost (AVX-512).
 #[inline(always)]
-pub fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
+pub fn solve<S: Simd, E: Edges<S>, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     edges: E,
-    Whole { bend, bears }: Whole<S>,
+    bears: S::f32s,
     factors: Shared,
 ) {
     if lines.len < 2 {
         return;
     }
     // Elimination forward, edge by edge.
-    let mut sweep = Sweep::start::<BEND, CONTACT>(simd, lines, edges, bend, factors);
-    // First the edges that have a triple beyond them, then the last ones.
-    let inner = if BEND { lines.len.saturating_sub(3) } else { 0 };
-    for e in 0..inner {
-        sweep.advance::<BEND, CONTACT, true>(e);
-    }
-    for e in inner..lines.len - 1 {
-        sweep.advance::<BEND, CONTACT, false>(e);
+    let mut sweep = Sweep::start::<CONTACT>(simd, lines, edges, factors);
+    for e in 0..lines.len - 1 {
+        sweep.advance::<CONTACT>(e);
     }
     // Substitution back; `taut` are edges whose tension is shared (README: "Tension along edges as they will lie").
     let bounds = TensionBounds::new(bears, lines.give);
@@ -104,75 +88,40 @@ pub fn solve<S: Simd, E: Edges<S>, const BEND: bool, const CONTACT: u8>(
 
 impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
     #[inline(always)]
-    fn start<const BEND: bool, const CONTACT: u8>(
-        simd: S,
-        lines: Lines<'a>,
-        edges: E,
-        bend: S::f32s,
-        factors: Shared<'a>,
-    ) -> Self {
+    fn start<const CONTACT: u8>(simd: S, lines: Lines<'a>, edges: E, factors: Shared<'a>) -> Self {
         let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
-        let mut s = Self {
+        Self {
             simd,
             lines,
             edges,
-            bend,
             factors,
             a: lines.particle(simd, 0),
-            b: lines.particle(simd, 1),
-            c: nothing,
             w_a: lines.weight(simd, 0),
-            w_b: lines.weight(simd, 1),
-            w_c: zero,
-            n_a: nothing,
-            weights: Weights {
-                parts: [zero; 3],
-                run: 0,
+            n_a: if CONTACT == FREE {
+                nothing
+            } else {
+                lines.normal(simd, 0)
             },
             d: nothing,
             inv_pivot: zero,
             g: zero,
-        };
-        if CONTACT != FREE {
-            s.n_a = lines.normal(simd, 0);
         }
-        if BEND && lines.len > 2 {
-            (s.c, s.w_c) = (lines.particle(simd, 2), lines.weight(simd, 2));
-            s.weights.of_triple(simd, [s.w_a, s.w_b, s.w_c], bend);
-            (s.a, s.b, s.c) = bend_triple([s.a, s.b, s.c], s.weights.parts);
-        }
-        if BEND {
-            lines.bent.store(0, s.a);
-        }
-        s
     }
 
-    /// Bends the triple e + 1, e + 2, e + 3, if there is one (`TRIPLE`), and eliminates the edge e.
+    /// Eliminates the edge e.
     #[inline(always)]
-    fn advance<const BEND: bool, const CONTACT: u8, const TRIPLE: bool>(&mut self, e: usize) {
+    fn advance<const CONTACT: u8>(&mut self, e: usize) {
         let s = self;
         let (simd, lines) = (s.simd, s.lines);
-        let (mut next, mut w_next) = (s.c, s.w_c);
-        // Bending: Δx = ∓w D/max(α̃ + W/2, W) for the triple e + 1, e + 2, e + 3.
-        if TRIPLE {
-            (next, w_next) = (lines.particle(simd, e + 3), lines.weight(simd, e + 3));
-            s.weights.of_triple(simd, [s.w_b, s.w_c, w_next], s.bend);
-            (s.b, s.c, next) = bend_triple([s.b, s.c, next], s.weights.parts);
-        }
-        if BEND {
-            lines.bent.store((e + 1) * S::f32s::LEN, s.b);
-        } else if e + 2 < lines.len {
-            (s.c, s.w_c) = (lines.particle(simd, e + 2), lines.weight(simd, e + 2));
-        }
-
+        let (b, w_b) = (lines.particle(simd, e + 1), lines.weight(simd, e + 1));
         // Row e of the system: (w_e + w_{e+1}) |d_e|² + α̃ L² on the diagonal, (L² − |d_e|²)/2 on the right side.
-        let d = s.b - s.a;
+        let d = b - s.a;
         let n_b = if CONTACT == FREE {
             s.n_a
         } else {
             lines.normal(simd, e + 1)
         };
-        let (edge, w, n) = (s.edges.at(simd, e), [s.w_a, s.w_b], [s.n_a, n_b]);
+        let (edge, w, n) = (s.edges.at(simd, e), [s.w_a, w_b], [s.n_a, n_b]);
         let [diagonal, rhs] = own::<S, CONTACT>(simd, lines.give, edge, d, w, n);
         // w_e d_{e−1} · d_e, the off-diagonal of the edges e − 1 and e with its sign changed.
         let beside = beside::<S, CONTACT>(s.w_a, s.d, d, s.n_a);
@@ -188,8 +137,7 @@ impl<'a, S: Simd, E: Edges<S>> Sweep<'a, S, E> {
         s.factors.store::<S>(slot + S::f32s::LEN, g);
 
         (s.d, s.inv_pivot, s.g) = (d, inv_pivot, g);
-        (s.a, s.b, s.c) = (s.b, s.c, next);
-        (s.w_a, s.w_b, s.w_c) = (s.w_b, s.w_c, w_next);
+        (s.a, s.w_a) = (b, w_b);
     }
 }
 
@@ -206,11 +154,11 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
 ) -> Range<usize> {
     let (m, lanes) = (lines.len, S::f32s::LEN);
     let (nothing, zero) = (V3::splat(simd, Vec3::ZERO), S::f32s::splat(simd, 0.0));
-    let mut far: V3<S> = lines.bent.load(simd, (m - 1) * lanes);
+    let mut far = lines.particle(simd, m - 1);
     let (mut pull, mut mu_far, mut factor) = (nothing, zero, zero);
     let mut taut = 0..0;
     for e in (0..m - 1).rev() {
-        let near = lines.bent.load(simd, e * lanes);
+        let near = lines.particle(simd, e);
         let slot = 2 * e * lanes;
         // μ_e = g_e + factor_{e+1} μ_{e+1}.
         let mut mu = factors.load(simd, slot + lanes) + factor * mu_far;
@@ -228,45 +176,4 @@ fn substitute<S: Simd, E: Edges<S>, const CONTACT: u8, const GIVES: bool>(
     // Δx_0 = −w_0 μ_0 d_0.
     apply::<S, CONTACT>(simd, lines, lines.at(0), far, nothing - pull);
     taut
-}
-
-/// Displacements of the first end, the middle and the last end of a triple, for D = 1.
-struct Weights<S: Simd> {
-    parts: [S::f32s; 3],
-    /// Number of successive particles whose inverse mass equals that of the particle before, in all lanes.
-    run: usize,
-}
-
-impl<S: Simd> Weights<S> {
-    /// Computes the weights of the next triple. They depend on the masses alone: where four masses in a row are equal, those of the triple
-    /// before are kept, which saves a division.
-    #[inline(always)]
-    fn of_triple(&mut self, simd: S, [w_a, w_b, w_c]: [S::f32s; 3], alpha_tilde: S::f32s) {
-        self.run = if w_b.simd_eq(w_c).all_true() {
-            self.run + 1
-        } else {
-            0
-        };
-        if self.run >= 3 {
-            return;
-        }
-        let w = (w_a + w_c) + w_b * 4.0;
-        let least = S::f32s::splat(simd, NO_MASS);
-        let part = S::f32s::splat(simd, 1.0) / (w * 0.5 + alpha_tilde).max(w).max(least);
-        self.parts = [w_a * part, (w_b + w_b) * part, w_c * part];
-    }
-}
-
-/// Pulls D = a − 2 b + c towards 0.
-#[inline(always)]
-fn bend_triple<S: Simd>(
-    [a, b, c]: [V3<S>; 3],
-    [k_a, k_b, k_c]: [S::f32s; 3],
-) -> (V3<S>, V3<S>, V3<S>) {
-    let bow = (a - b) + (c - b);
-    (
-        a - Factor(k_a) * bow,
-        b + Factor(k_b) * bow,
-        c - Factor(k_c) * bow,
-    )
 }

@@ -57,9 +57,7 @@ pub struct Lines<'a> {
     pub normal: SharedPoints<'a>,
     /// Sums of the impulses on particles along their normals; read and written with [`PRESSED`] alone.
     pub pressed: Shared<'a>,
-    /// Positions between bending and stretching, side by side from the first on. May be `position` if that has this layout too.
-    pub bent: SharedPoints<'a>,
-    /// Scratch for [`share`](super::share), side by side.
+    /// Scratch for [`bend`](super::bend) and [`share`](super::share), side by side.
     pub shared: SharedPoints<'a>,
     /// Limits of compliance and tension.
     pub give: Give,

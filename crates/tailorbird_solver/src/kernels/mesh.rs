@@ -10,7 +10,7 @@ use bevy_math::Vec4;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
-    edges::{MeshLines, Whole},
+    edges::MeshLines,
     lanes::{Shared, SharedPoints, V3, WIDEST, for_few, with_scratch},
     lattice::Block,
     line,
@@ -163,7 +163,7 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             // Lanes are taken in order.
             break;
         }
-        let (zero, quarter) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 0.25));
+        let quarter = S::f32s::splat(simd, 0.25);
         let mut lightest = S::f32s::splat(simd, NO_MASS);
         for k in 0..m {
             let lanes = Lanes::of_link::<S>(mesh.fabric, &mesh.fabric.particle_or_last, start, k);
@@ -187,18 +187,15 @@ fn solve_batch<S: Simd, const BODIES: bool>(
             stretch,
             stride: LANES,
         };
-        let whole = Whole {
-            bend: zero,
-            bears: quarter / lightest,
-        };
+        let bears = quarter / lightest;
         let lines = block.lines(m, n, mesh.give);
         let closing = batch.closing.as_ref().map(|all| &all[first..first + n]);
         if BODIES {
-            solve_lines::<S, PRESSED>(simd, lines, edges, whole, closing, factors);
+            solve_lines::<S, PRESSED>(simd, lines, edges, bears, closing, factors);
         } else if mesh.normal.is_some() {
-            solve_lines::<S, TOUCHING>(simd, lines, edges, whole, closing, factors);
+            solve_lines::<S, TOUCHING>(simd, lines, edges, bears, closing, factors);
         } else {
-            solve_lines::<S, FREE>(simd, lines, edges, whole, closing, factors);
+            solve_lines::<S, FREE>(simd, lines, edges, bears, closing, factors);
         }
         for k in 0..m {
             let moved: V3<S> = block.position.load(simd, k * n);
@@ -217,7 +214,7 @@ fn solve_lines<S: Simd, const CONTACT: u8>(
     simd: S,
     lines: Lines,
     edges: MeshLines,
-    whole: Whole<S>,
+    bears: S::f32s,
     closing: Option<&[u32]>,
     factors: Shared,
 ) {
@@ -225,10 +222,10 @@ fn solve_lines<S: Simd, const CONTACT: u8>(
         // A function of its own: few meshes have any rings.
         simd.vectorize(
             #[inline(always)]
-            || ring::solve::<S, _, CONTACT>(simd, lines, edges, whole.bears, closing, factors),
+            || ring::solve::<S, _, CONTACT>(simd, lines, edges, bears, closing, factors),
         );
     } else {
-        line::solve::<S, _, false, CONTACT>(simd, lines, edges, whole, factors);
+        line::solve::<S, _, CONTACT>(simd, lines, edges, bears, factors);
     }
 }
 

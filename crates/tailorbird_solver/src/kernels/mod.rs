@@ -2,6 +2,7 @@
 
 pub mod aerodynamics;
 pub mod ball;
+pub mod bend;
 pub mod breeze;
 pub mod capsule;
 pub mod cells;
