@@ -164,7 +164,7 @@ fn a_triangle_without_area_and_still_air_do_nothing() {
     }
 }
 
-/// Where a mass is missing, nothing is computed.
+/// Computes nothing where a mass is missing.
 #[test]
 #[should_panic(expected = "a sheet of 4 x 5 particles")]
 fn a_sheet_that_lacks_a_mass_is_refused() {
