@@ -355,35 +355,6 @@ pub fn each_lane<S: Simd>(simd: S, mask: S::mask32s, mut f: impl FnMut(usize)) {
     }
 }
 
-/// Calls a kernel for two instruction sets only: there are many that few cloths need, and each instruction set takes long to compile.
-macro_rules! for_few {
-    ($level:expr, $simd:ident => $do:expr) => {{
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let level = $level
-            .as_avx2()
-            .map_or(fearless_simd::Level::fallback(), fearless_simd::Level::Avx2);
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let level = $level;
-        match level {
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            fearless_simd::Level::Avx2($simd) => $simd.vectorize(
-                #[inline(always)]
-                || $do,
-            ),
-            #[cfg(target_arch = "aarch64")]
-            fearless_simd::Level::Neon($simd) => $simd.vectorize(
-                #[inline(always)]
-                || $do,
-            ),
-            _ => {
-                let $simd = fearless_simd::Fallback::new();
-                $do
-            }
-        }
-    }};
-}
-pub(super) use for_few;
-
 #[cfg(test)]
 pub use crate::instruction_set::levels;
 

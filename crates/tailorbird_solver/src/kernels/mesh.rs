@@ -11,7 +11,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::{
     edges::MeshLines,
-    lanes::{Shared, SharedPoints, V3, WIDEST, for_few, with_scratch},
+    lanes::{Shared, SharedPoints, V3, WIDEST, with_scratch},
     lattice::Block,
     line,
     lines::{FREE, Give, Lines, NO_MASS, PRESSED, TOUCHING},
@@ -20,6 +20,7 @@ use super::{
     ring,
 };
 use crate::{
+    instruction_set::for_few,
     points::Points,
     topology::{
         chains::{ChainBatch, LANES, NONE},

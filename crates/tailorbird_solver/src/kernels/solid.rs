@@ -12,8 +12,9 @@ use fearless_simd::{Fallback, Level, Simd, dispatch, prelude::*};
 
 use super::{
     contact::{Touching, unit},
-    lanes::{V3, Window, each_lane, each_window, for_few},
+    lanes::{V3, Window, each_lane, each_window},
 };
+use crate::instruction_set::for_few;
 
 /// Number of planes that a long path is followed by.
 const PLANES: u32 = 12;
