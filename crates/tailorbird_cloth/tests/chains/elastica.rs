@@ -86,18 +86,12 @@ fn a_clamped_strip_droops_as_the_elastica() {
     for weight in [0.1, 1.0, 10.0, 100.0] {
         let expected = elastica(f64::from(weight));
         for rows in [17, 33, 65, 129] {
-            for (substeps, hz) in [
-                (None, 60.0),
-                (Some(8), 60.0),
-                (Some(32), 60.0),
-                (None, 30.0),
-                (None, 240.0),
-            ] {
+            for (substeps, hz) in [(None, 60.0), (Some(32), 60.0), (None, 30.0), (None, 240.0)] {
                 let droop = droop(rows, substeps, hz, weight);
                 println!(
                     "{weight}, {rows} rows, {substeps:?} substeps, {hz} Hz: {droop:.4}, not {expected:.4}"
                 );
-                if (droop - expected).abs() > 0.05 {
+                if (droop - expected).abs() > 0.015 {
                     wrong.push((weight, rows, substeps, hz, droop, expected));
                 }
             }
