@@ -9,7 +9,7 @@ pub fn verlet_step(mut cloths: StagedCloths) {
     cloths.run(INTEGRATE);
 }
 
-/// Holds the constraints, as the cloth's [`ClothSolver`](super::ClothSolver) says, [`ClothStep::iterations`] times.
+/// Holds the constraints, as the cloth's [`ClothSolver`](super::ClothSolver) says, [`ClothStep::iterations`](crate::step::ClothStep::iterations) times.
 ///
 /// [`ClothSolver::GaussSeidel`](super::ClothSolver::GaussSeidel) goes over batches that share no particle; those of compliance 0 are solved as Jakobsen's
 /// relaxation, the others as XPBD.
