@@ -74,7 +74,10 @@ pub fn build_topology(
             }
             Ok(new) => {
                 built = true;
-                if cloth.is_changed() || !particles.grow(&topology, &new, attached) {
+                // One that was written as it was is no other one.
+                let another = cloth.is_changed()
+                    && cloth.shape.fingerprint(topology.scale) != topology.revision;
+                if another || !particles.grow(&topology, &new, attached) {
                     *particles = keep_shape(&topology, &new, &particles)
                         .unwrap_or_else(|| ClothParticles::at_rest(&new));
                 }

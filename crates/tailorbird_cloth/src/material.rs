@@ -33,7 +33,7 @@
 //! | heavier | `areal_density`, 0.15 kg/m² | it pulls, pushes and swings harder and minds the wind less; how it hangs depends on stiffness by weight |
 //! | gives way along its threads | `warp_compliance`, `weft_compliance`, 1/16,000 and 1/8,000 m/N | 0 is rigid, and costs the same; a grid's columns are warp |
 //! | gives way on the bias | `shear_compliance`, 1/60 m/N | 0 beside rigid threads makes a plate, which stretches more |
-//! | larger folds | `bend_compliance`, 1/8e-6 1/(N m) | the size of folds is about the bending length (B/(σ g))^⅓: 18 mm; 0 makes a board, of at most σ L⁴/(2·10⁻⁶ h²) |
+//! | larger folds | `bend_compliance`, 1/8e-6 1/(N m) | the size of folds is about the bending length (B/(σ g))^⅓: 18 mm; 0 makes a board |
 //! | less flutter and ripple | `viscosity`, 0.05 m²/s | between neighbours alone: a pendulum keeps its swing; at most about L²/(8 h) acts, with L and h as below |
 //! | comes to rest sooner | `damping`, 0.3 1/s | against the world: what hangs in a vehicle lags behind it |
 //! | clings, slides | `friction`, 0.5 | the geometric mean with the collider's |
@@ -44,7 +44,7 @@
 //!
 //! # Traps
 //!
-//! Rows and columns of a grid bend as stiffly as they are meant to at any resolution; on the bias a grid is half as stiff. The chain solver relaxes shear
+//! Rows and columns of a grid bend as stiffly as they are meant to, up to 100 σ L⁴/h²: all presets from a spacing of 2 mm on; on the bias a grid is half as stiff. The chain solver relaxes shear
 //! once in a substep, and so the bending of meshes that are no flat grid: they hold up to a limit, a shear stiffness of about σ L²/(2 h²) and a bending rigidity of about
 //! σ L⁴/(6 h²) (σ areal density, L spacing of the particles, h substep). A stiffer fabric acts as one at the limit, and so gets softer as the
 //! resolution grows. More [substeps](crate::settings::ClothSettings::substeps) or fewer particles lift both.

@@ -37,7 +37,7 @@ macro_rules! snapshot {
         /// much memory as the cloths do; topologies are shared.
         ///
         /// Not held, as others write it too: [`ClothSettings`](crate::settings::ClothSettings) (a single step counts down in it),
-        /// attachments that broke meanwhile and are despawned (spawn them again before), colliders that a physics engine has given for the step
+        /// attachments that broke meanwhile and are despawned (spawned again, they hold on anew: close to, but not the same bits), colliders that a physics engine has given for the step
         /// already, and `TrackedPose` and `ClothLoad` of the bridges to physics engines, which are to be rolled back with its bodies.
         /// Restore between frames, not within a step of the fixed loop.
         ///

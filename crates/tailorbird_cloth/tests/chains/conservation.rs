@@ -1,6 +1,6 @@
 //! Conservation: momentum of free sheets, energy of sheets that nothing drives.
 
-use bevy_math::{DVec3, UVec2, Vec3};
+use bevy_math::{DVec3, UVec2, Vec2, Vec3};
 use tailorbird_cloth::prelude::*;
 use tailorbird_test::{G, Scene, Sheet, rigid};
 
@@ -108,4 +108,59 @@ fn a_swinging_sheet_gains_no_energy() {
     println!("most {most:.6} of the start in step {when}; after 1, 10, 20 … s: {at:?}");
     assert_eq!(sheet.complaint(), None);
     assert!(most <= 1.0 + 1e-5, "{most} of the start in step {when}");
+}
+
+/// Bending that asks for the opposite of what the edges do would become motion. Boards of few lines do gain energy (docs/limits.md).
+#[test]
+fn a_thrown_board_keeps_its_momentum_and_gains_no_energy() {
+    for (columns, rows, stiffest) in [(3, 3, 0.1), (2, 9, 0.1), (33, 5, 0.1), (17, 17, 0.0)] {
+        for bend_compliance in [stiffest, stiffest + 1e-3, 1.0] {
+            for substeps in [None, Some(32)] {
+                let mut board = Sheet::new(&Scene {
+                    size: Vec2::ONE,
+                    resolution: UVec2::new(columns, rows),
+                    material: ClothMaterial {
+                        bend_compliance,
+                        damping: 0.0,
+                        viscosity: 0.0,
+                        ..rigid()
+                    },
+                    gravity: Vec3::ZERO,
+                    substeps,
+                    ..Scene::default()
+                });
+                let (velocity, spin) = (Vec3::new(0.5, 0.3, -0.4), Vec3::new(1.0, 0.5, 0.7));
+                let wave = |p: Vec3| Vec3::Z * (5.0 * p.x + 0.3).sin() * (4.0 * p.y + 0.7).cos();
+                let at = board.particles().positions();
+                let thrown: Vec<Vec3> = at.map(|p| velocity + spin.cross(p) + wave(p)).collect();
+                let masses = (0..thrown.len()).map(|i| board.particles().mass(i));
+                let (mut energy, mut momentum, mut mass) = (0.0, Vec3::ZERO, 0.0);
+                for (v, m) in thrown.iter().zip(masses) {
+                    energy += 0.5 * m * v.length_squared();
+                    momentum += m * *v;
+                    mass += m;
+                }
+                board.change(|forces: &mut ClothForces| {
+                    for (i, velocity) in thrown.into_iter().enumerate() {
+                        forces.add_acceleration(i as u32, velocity * 60.0);
+                    }
+                });
+                let what = format!("{columns} x {rows}, {bend_compliance}, {substeps:?}");
+                let (mut most, mut off) = (0.0_f64, 0.0_f32);
+                for _ in 0..300 {
+                    board.step();
+                    let particles = board.particles();
+                    most = most.max(particles.kinetic_energy() / f64::from(energy));
+                    off = off.max(
+                        particles.momentum().distance(momentum) / (2.0 * mass * energy).sqrt(),
+                    );
+                }
+                println!("{what}: energy {most:.4}, momentum off by {off:.1e}");
+                assert_eq!(board.complaint(), None, "{what}");
+                // Single precision: in 32 substeps of a step each place changes by little more than its last digits.
+                let rounded = if substeps.is_some() { 0.08 } else { 4e-3 };
+                assert!(most < 1.01 && off < rounded, "{what}: {most}, {off}");
+            }
+        }
+    }
 }

@@ -51,8 +51,9 @@ fn the_elastica_of_a_stiff_strip_is_a_beam() {
 const COLUMNS: u32 = 5;
 const LENGTH: f32 = 0.5;
 
-/// A strip of `rows` whose σ g L³/B is `weight`, L being its free length: how far it droops by that length.
-fn droop(rows: u32, substeps: Option<u32>, hz: f64, weight: f32) -> f64 {
+/// A strip of `rows` whose σ g L³/B is `weight`, L being its free length: how far it droops by that length. None where it is stiffer than a line
+/// can be.
+fn droop(rows: u32, substeps: Option<u32>, hz: f64, weight: f32) -> Option<f64> {
     let spacing = LENGTH / (rows - 1) as f32;
     // The clamp is half way between the two pinned rows.
     let free = spacing * (rows as f32 - 1.5);
@@ -72,12 +73,18 @@ fn droop(rows: u32, substeps: Option<u32>, hz: f64, weight: f32) -> f64 {
         ..Scene::default()
     });
     strip.sim.set_hz(hz);
+    strip.step();
+    let substeps = strip.sim.resource::<ClothStep>().substeps();
+    let seconds = 1.0 / (hz as f32 * substeps as f32);
+    if rigidity * seconds * seconds > 100.0 * density * spacing.powi(4) {
+        return None;
+    }
     strip.steps((6.0 * hz) as u32);
     assert_eq!(strip.complaint(), None);
     let particles = strip.particles();
     let last = particles.len() - COLUMNS as usize..particles.len();
     let depth: f64 = last.map(|i| -f64::from(particles.position(i).z)).sum();
-    depth / f64::from(COLUMNS) / f64::from(free)
+    Some(depth / f64::from(COLUMNS) / f64::from(free))
 }
 
 #[test]
@@ -85,9 +92,13 @@ fn a_clamped_strip_droops_as_the_elastica() {
     let mut wrong = Vec::new();
     for weight in [0.1, 1.0, 10.0, 100.0] {
         let expected = elastica(f64::from(weight));
+        let mut measured = 0;
         for rows in [17, 33, 65, 129] {
             for (substeps, hz) in [(None, 60.0), (Some(32), 60.0), (None, 30.0), (None, 240.0)] {
-                let droop = droop(rows, substeps, hz, weight);
+                let Some(droop) = droop(rows, substeps, hz, weight) else {
+                    continue;
+                };
+                measured += 1;
                 println!(
                     "{weight}, {rows} rows, {substeps:?} substeps, {hz} Hz: {droop:.4}, not {expected:.4}"
                 );
@@ -96,6 +107,8 @@ fn a_clamped_strip_droops_as_the_elastica() {
                 }
             }
         }
+        println!("{weight}: {measured} strips");
+        assert!(measured > 0, "{weight}");
     }
     assert!(wrong.is_empty(), "{wrong:?}");
 }

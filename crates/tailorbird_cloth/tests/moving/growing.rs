@@ -56,6 +56,24 @@ fn a_scale_that_changes_at_once_keeps_the_shape() {
     }
 }
 
+/// As rollback does, which writes all that a game set.
+#[test]
+fn a_cloth_that_is_written_as_it_was_while_it_grows_keeps_its_shape() {
+    let grown = |written: bool| {
+        let mut game = game(60.0, 60.0);
+        let (cloth, body) = spawn_cape(&mut game, Held::Pinned);
+        game.settings().gravity = Vec3::new(0.0, -6.0, -6.0);
+        game.frames(30);
+        game.edit::<Transform>(body, |place| place.scale = Vec3::splat(1.01));
+        if written {
+            game.edit::<Cloth>(cloth, |cloth| *cloth = cloth.clone());
+        }
+        game.frames(1);
+        shape(&game, cloth)
+    };
+    assert_eq!(grown(true), grown(false));
+}
+
 #[derive(Component)]
 struct Tween(fn(f32) -> f32);
 

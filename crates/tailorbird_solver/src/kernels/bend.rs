@@ -27,9 +27,6 @@ use super::{
     lines::Lines,
 };
 
-/// Least α̃/w [-]. A fabric that is stiffer acts as one of this stiffness: beyond it, rounding would move it.
-const LEAST_MASS: f32 = 2e-6;
-
 /// Pivots and multipliers of the elimination of the lines side by side. They depend on the masses alone, and mostly are those of the lines before.
 pub struct Factors<'a> {
     /// Inverse masses for which the factors hold; those of lines at the border halved.
@@ -67,9 +64,7 @@ impl<'a> Factors<'a> {
     #[inline(always)]
     fn renew<S: Simd>(&mut self, simd: S, lines: Lines, whole: Whole<S>) {
         let (m, lanes) = (lines.len, S::f32s::LEN);
-        let least = S::f32s::splat(simd, LEAST_MASS);
-        // Not 0/0 for what is held.
-        let alpha_tilde = whole.bend.max(S::f32s::splat(simd, f32::MIN_POSITIVE));
+        let alpha_tilde = whole.bend;
         let zero = S::f32s::splat(simd, 0.0);
         // l_{k−1}, l_{k−1} pivot_{k−1}, 1/pivot_{k−1}, 1/pivot_{k−2}.
         let (mut l, mut c, mut inv_pivot, mut inv_before) = (zero, zero, zero, zero);
@@ -80,8 +75,7 @@ impl<'a> Factors<'a> {
             let (diagonal, beside) = (first + 4.0 * middle + last, -2.0 * (first + middle));
 
             let w = lines.weight(simd, k);
-            let mass = (alpha_tilde / w).max(least);
-            let pivot = mass + diagonal - c * l - inv_before;
+            let pivot = alpha_tilde / w + diagonal - c * l - inv_before;
             (inv_before, inv_pivot) = (inv_pivot, S::f32s::splat(simd, 1.0) / pivot);
             c = S::f32s::splat(simd, beside) - l;
             l = c * inv_pivot;

@@ -56,7 +56,7 @@ impl Line {
         for (i, row) in a.iter_mut().enumerate() {
             let w = self.inv_mass[i];
             if w > 0.0 {
-                row[i] += (self.bend / w).max(2e-6);
+                row[i] += self.bend / w;
             } else {
                 row.fill(0.0);
                 row[i] = 1.0;
@@ -200,7 +200,7 @@ impl Fabric {
                 .collect(),
             length: particles.iter().map(|i| of(lengths, *i)).collect(),
             stretch: scale * f64::from(self.stretch),
-            bend: scale * f64::from(self.bend),
+            bend: scale * f64::from(self.bend).max(1e-2 / f64::from(MASS)),
             borne: 1.3 * kappa,
         }
     }
@@ -208,7 +208,6 @@ impl Fabric {
 
 fn fabrics() -> impl Strategy<Value = Fabric> {
     let soft = prop_oneof![Just(0.0_f32), 1e-4_f32..3.0];
-    // A board at one end: beyond 10⁻³, rounding is as large as the bounds.
     let bend = prop_oneof![
         Just(f32::INFINITY),
         (-3.0_f32..1.5).prop_map(|power| 10.0_f32.powf(power))
