@@ -56,7 +56,7 @@ fn a_scale_that_changes_at_once_keeps_the_shape() {
     }
 }
 
-/// As rollback does, which writes all that a game set.
+/// Writes it in the way of rollback, which writes all that a game set.
 #[test]
 fn a_cloth_that_is_written_as_it_was_while_it_grows_keeps_its_shape() {
     let grown = |written: bool| {
