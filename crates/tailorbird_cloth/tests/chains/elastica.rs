@@ -102,13 +102,13 @@ fn a_clamped_strip_droops_as_the_elastica() {
                 println!(
                     "{weight}, {rows} rows, {substeps:?} substeps, {hz} Hz: {droop:.4}, not {expected:.4}"
                 );
-                if (droop - expected).abs() > 0.015 {
+                if (droop / expected - 1.0).abs() > 0.024 {
                     wrong.push((weight, rows, substeps, hz, droop, expected));
                 }
             }
         }
         println!("{weight}: {measured} strips");
-        assert!(measured > 0, "{weight}");
+        assert!(measured >= 5, "{weight}");
     }
     assert!(wrong.is_empty(), "{wrong:?}");
 }
